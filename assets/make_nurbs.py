@@ -1,8 +1,9 @@
-"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json and cad/dish.json. `covact convert
-cad/tube.json -o cad/tube.igs` makes the IGES file that the scene reads; the other likewise.
+"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json, cad/dish.json and cad/flat.json.
+`covact convert cad/tube.json -o cad/tube.igs` makes the IGES file that the scene reads; the others likewise.
 
 tube  a cylinder about y, radius 20, from y = -30 to 30: two rational half-turns, the upper one (z > 0) and the lower one
 dish  z = .02 x^2 + .025 y^2 over 30 by 24 about the origin, polynomial
+flat  1: a square of 50 from the origin in z = 0; 2: a strip of 130 by 2 from the origin in z = .5 (for studies, read as JSON)
 """
 
 import json
@@ -45,6 +46,12 @@ def dish():
     yield patch(1, "dish", [2, 2], [QUADRATIC, QUADRATIC], points)
 
 
+def flat():
+    for entity, (name, (x, y), z) in enumerate((("plate", (50.0, 50.0), 0.0), ("strip", (130.0, 2.0), 0.5))):
+        points = [[i * x, j * y, z, 1.0] for j in range(2) for i in range(2)]
+        yield patch(entity + 1, name, [1, 1], [LINEAR, LINEAR], points)
+
+
 def write(name, patches):
     geometry = {"covact_geometry": 1, "unit": "mm", "resolution": None, "patches": list(patches)}
     with open(os.path.join(HERE, "cad", f"{name}.json"), "w") as file:
@@ -55,3 +62,4 @@ def write(name, patches):
 if __name__ == "__main__":
     write("tube", tube())
     write("dish", dish())
+    write("flat", flat())

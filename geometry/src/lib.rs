@@ -86,4 +86,4 @@ pub use nalgebra;
 pub use patch::{NurbsPatch, PatchError, PatchShape};
 pub use project::{EdgeKind, Foot, Hint, Location, PatchSet, Status};
 pub use surface::{Jet, Jet3, Surface, Vec3};
-pub use trim::{RulePoint, Trim, TrimCurve, TrimLoop};
+pub use trim::{CurvePart, RulePoint, Trim, TrimCurve, TrimLoop};

@@ -36,7 +36,7 @@ pub use generate::{block, cylinder_panel, plate, sphere_panel};
 pub use gmsh::read_gmsh;
 pub use inp::read_inp;
 pub use measure::{ElementSize, H8_EDGES, Range};
-pub use nurbs::{Edge, NurbsError, NurbsSheet};
+pub use nurbs::{Border, Edge, NurbsError, NurbsSheet};
 pub use raw::{MeshReport, ThicknessRule};
 pub use sets::Selected;
 pub use spacing::positions;

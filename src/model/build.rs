@@ -7,6 +7,7 @@ mod fibres;
 pub(crate) mod master_faces;
 mod meshes;
 mod nurbs_bodies;
+mod nurbs_masters;
 mod probes;
 mod rims;
 mod seams;
@@ -31,7 +32,7 @@ use super::symmetry::Unsymmetric;
 use super::{BodyModel, Metal, Model, ModelError, SurfaceModel};
 use crate::contact::lever::Lever;
 use crate::machine::memory;
-use crate::mesh::{self, Edge, Face, Mesh};
+use crate::mesh::{self, Border, Face, Mesh};
 use crate::scene::{
     self, LoadedScene, Material, MeshSource, POSITION_AND_TIME, Scene, Stabilization, TIME, Value,
 };
@@ -107,7 +108,7 @@ pub fn build_stage(
     }
     builder.stage = start.index;
     let supports = builder.supports(&held)?;
-    builder.hold_normals(&supports.held_normals)?;
+    builder.hold_normals(&supports)?;
     builder.held_fibres()?;
     let (dead_loads, follower_loads) = builder.loads()?;
     let probes = builder.probes()?;
@@ -328,16 +329,16 @@ impl<'s> Builder<'s> {
         Ok(())
     }
 
-    /// Holds the normals of sheets along edges.
-    fn hold_normals(&mut self, held: &[(usize, Edge, HeldNormal)]) -> Result<(), ModelError> {
+    /// Holds the normals of sheets along borders, and curves of trims.
+    fn hold_normals(&mut self, held: &supports::Supports) -> Result<(), ModelError> {
         for (index, body) in self.bodies.iter_mut().enumerate() {
-            let own = held.iter().filter(|(of, ..)| *of == index);
-            let own: Vec<(Edge, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
-            if let (Block::Nurbs(block), false) = (&mut body.block, own.is_empty()) {
-                let name = &body.name;
-                block
-                    .hold(&own)
-                    .at(|| format!("/bodies/{name}/nurbs/file"))?;
+            let own = (held.held_normals.iter()).filter(|(of, ..)| *of == index);
+            let own: Vec<(Border, HeldNormal)> = own.map(|(_, edge, to)| (*edge, *to)).collect();
+            let anchors = &held.held_anchors[index];
+            if let Block::Nurbs(block) = &mut body.block {
+                block.hold_anchors(anchors);
+                let at = || format!("/bodies/{}/nurbs/file", body.name);
+                block.hold(&own).at(at)?;
             }
         }
         Ok(())

@@ -1,35 +1,33 @@
 //! Couples along edges of sheets that turn with them.
 //!
 //! A couple M per undeformed length works on the turn of the normal towards the inside: `dW = int M nu^k omega_k dL` with
-//! `omega_k = n . drho_k` and the outward conormal `nu = rho^i / |rho^i|` of an edge along which xi^i is constant. Positive ones lift
+//! `omega_k = n . drho_k` and the outward conormal `nu = m_i rho^i / |m_i rho^i|` of a curve along which `m_i dxi^i` is zero: of an edge
+//! along which xi^i is constant m is one of its numbers. Positive ones lift
 //! what would lie beyond the edge towards the top.
 use super::sheet_pressure::{DOFS, NODES};
-use crate::mesh::{Edge, NurbsSheet};
+use crate::mesh::nurbs::DEGREE;
+use crate::mesh::{Border, NurbsSheet};
 use covact_geometry::{Frame, Jet, Vec3};
 use nalgebra::Matrix3;
 
-/// The edge of an element.
+/// What bounds an element.
 #[derive(Debug, Clone)]
 pub struct CoupleSpan {
     /// Nodes of the model.
     pub nodes: [u32; NODES],
-    /// Derivatives of the shape functions, and undeformed length, at Gauss points.
-    points: Vec<([[f64; NODES]; 2], f64)>,
-    /// The parameter that is constant along it.
-    across: usize,
-    /// +1 where it is at its end.
-    outward: f64,
+    /// Derivatives of the shape functions, undeformed length and `m_i` at Gauss points.
+    points: Vec<([[f64; NODES]; 2], f64, [f64; 2])>,
 }
 
 impl CoupleSpan {
-    /// The elements along an edge of a sheet whose first node has this number.
-    pub fn all(sheet: &NurbsSheet, edge: Edge, first_node: u32) -> Vec<CoupleSpan> {
-        (sheet.edge_points(edge).into_iter())
+    /// The elements along a border of a sheet whose first node has this number.
+    pub fn all(sheet: &NurbsSheet, border: Border, first_node: u32) -> Vec<CoupleSpan> {
+        (sheet.border_points(border, DEGREE + 1).into_iter())
             .map(|points| CoupleSpan {
-                nodes: points[0].0.nodes.map(|n| n + first_node),
-                points: points.iter().map(|(p, length)| (p.n_i, *length)).collect(),
-                across: edge.direction(),
-                outward: if edge.at_end() { 1.0 } else { -1.0 },
+                nodes: points[0].at.nodes.map(|n| n + first_node),
+                points: (points.iter())
+                    .map(|p| (p.at.n_i, p.length, p.outward))
+                    .collect(),
             })
             .collect()
     }
@@ -46,7 +44,7 @@ impl CoupleSpan {
         if let Some(k) = &mut k {
             k.fill(0.0);
         }
-        for (n_i, length) in &self.points {
+        for (n_i, length, out) in &self.points {
             let rho_i = n_i.each_ref().map(|n| -> Vec3 {
                 let terms = x.iter().zip(n);
                 terms.map(|(x, n)| x * *n).sum()
@@ -62,10 +60,12 @@ impl CoupleSpan {
             };
             let (up, n) = (frame.rho_up(), frame.n);
             let upper = |i: usize, j: usize| frame.a_inv[i + j];
-            let i = self.across;
-            let size = upper(i, i).sqrt();
-            let w = couple * length * self.outward;
-            let nu = [0, 1].map(|k| upper(i, k) / size);
+            // m_i rho^i and its components.
+            let m = up[0] * out[0] + up[1] * out[1];
+            let upper_m = [0, 1].map(|k| upper(0, k) * out[0] + upper(1, k) * out[1]);
+            let size = m.norm();
+            let w = couple * length;
+            let nu = upper_m.map(|u| u / size);
             let along: [f64; NODES] =
                 std::array::from_fn(|a| nu[0] * n_i[0][a] + nu[1] * n_i[1][a]);
             for (f, along) in f.chunks_exact_mut(3).zip(along) {
@@ -77,10 +77,10 @@ impl CoupleSpan {
             for b in 0..NODES {
                 // The change of nu^k is this vector times that of node b.
                 let turned: [Vec3; 2] = std::array::from_fn(|k| {
-                    (0..2).fold(Vec3::zeros(), |sum, m| {
-                        let first = (up[i] * upper(m, k) + up[k] * upper(m, i)) * (-1.0 / size);
-                        let second = up[i] * (nu[k] * upper(m, i) / (size * size));
-                        sum + (first + second) * n_i[m][b]
+                    (0..2).fold(Vec3::zeros(), |sum, l| {
+                        let first = (m * upper(l, k) + up[k] * upper_m[l]) * (-1.0 / size);
+                        let second = m * (nu[k] * upper_m[l] / (size * size));
+                        sum + (first + second) * n_i[l][b]
                     })
                 });
                 let beta = up[0] * n_i[0][b] + up[1] * n_i[1][b];
@@ -101,6 +101,7 @@ impl CoupleSpan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Edge;
     use crate::mesh::nurbs::Fineness;
     use covact_geometry::NurbsPatch;
 
@@ -123,7 +124,7 @@ mod tests {
         let sheet = NurbsSheet::new(&patch, 0.1, Fineness::Elements([2, 2]), true).unwrap();
         let positions = sheet.positions();
         for edge in Edge::ALL {
-            let spans = CoupleSpan::all(&sheet, edge, 0);
+            let spans = CoupleSpan::all(&sheet, Border::Edge(edge), 0);
             assert_eq!(spans.len(), 2);
             let x = spans[1].nodes.map(|n| positions[n as usize]);
             let (mut f, mut k) = ([0.0; DOFS], Box::new([0.0; DOFS * DOFS]));
@@ -152,7 +153,7 @@ mod tests {
             assert!(force.norm() < 1e-13, "{force}");
             // `M nu x n`, integrated: along the edge, against its sense where the outside is on its left.
             let expected: Vec3 = (spans[1].points.iter())
-                .map(|(n_i, length)| {
+                .map(|(n_i, length, _)| {
                     let r = n_i
                         .each_ref()
                         .map(|n| -> Vec3 { x.iter().zip(n).map(|(x, n)| x * *n).sum() });

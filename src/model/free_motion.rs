@@ -2,7 +2,7 @@
 use super::{Model, Support};
 use crate::mesh::nurbs::Kept;
 use crate::scene::ValueError;
-use crate::shell::{Block, SEAM_NODES};
+use crate::shell::{ANCHOR_NODES, Block, SEAM_NODES};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 use std::collections::BTreeSet;
@@ -168,13 +168,27 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
             parent[r as usize] = first;
         }
     }
+    for spring in body.block.anchors() {
+        let [a, b] = [spring.nodes[0], spring.nodes[ANCHOR_NODES - 1]];
+        let [a, b] = [a, b].map(|n| root(&mut parent, n));
+        parent[b as usize] = a;
+    }
     for seam in body.block.seams() {
         let [a, b] = [seam.nodes[0], seam.nodes[SEAM_NODES - 1]].map(|n| root(&mut parent, n));
         parent[b as usize] = a;
     }
     let mut groups = std::collections::BTreeMap::<u32, Vec<u32>>::new();
     let unused = trimmed.map(|s| s.unused()).unwrap_or_default();
-    let unused: BTreeSet<u32> = unused.into_iter().map(|[n, _]| n).collect();
+    let held: BTreeSet<u32> = body
+        .block
+        .anchors()
+        .iter()
+        .map(|s| s.nodes[ANCHOR_NODES - 1])
+        .collect();
+    // Neither are points of curves that nothing holds.
+    let anchors = trimmed.into_iter().flat_map(|s| s.anchors.iter());
+    let loose = anchors.map(|a| a.node).filter(|n| !held.contains(n));
+    let unused: BTreeSet<u32> = unused.into_iter().map(|[n, _]| n).chain(loose).collect();
     for n in (0..nodes as u32).filter(|n| !unused.contains(n)) {
         let r = root(&mut parent, n);
         groups.entry(r).or_default().push(n);

@@ -102,12 +102,15 @@ impl Reporter<'_> {
         all.map(effect).collect()
     }
 
-    /// Faces of CAD surfaces that are joined.
+    /// Faces of CAD surfaces that are joined, or held along trims.
     fn seams(&self) -> Effect {
         let joined = || (self.described()).filter(|(b, _)| !b.block.seams().is_empty());
         let sheet = || (self.described()).find(|(b, _)| b.block.sheet().is_some());
         let names = listed(joined().map(|(b, _)| b.name.as_str()));
         let pairs: usize = joined().map(|(b, _)| b.block.seams().len()).sum();
+        let springs: usize = (self.described())
+            .map(|(b, _)| b.block.anchors().len())
+            .sum();
         let at = match joined().next().or_else(sheet) {
             Some((body, _)) => pointer(&["bodies", &body.name, "nurbs"]),
             None => "/bodies".to_owned(),
@@ -116,9 +119,14 @@ impl Reporter<'_> {
             EffectKind::NurbsSeams,
             at,
             why(
-                pairs > 0,
-                format!("{pairs} pairs of elements on both sides of common edges (body {names})"),
-                "no body has faces with a common edge",
+                pairs + springs > 0,
+                match pairs {
+                    0 => format!("{springs} points of trims are held"),
+                    _ => format!(
+                        "{pairs} pairs of elements on both sides of common edges (body {names})"
+                    ),
+                },
+                "no body has faces with a common edge, or one that is held along a trim",
             ),
         )
         .costs("a 96 x 96 tangent a pair")

@@ -480,6 +480,14 @@ impl Block {
         }
     }
 
+    /// Springs at points of trims that supports hold.
+    pub fn anchors(&self) -> &[super::nurbs::AnchorSpring] {
+        match self {
+            Block::Nurbs(block) => block.anchors(),
+            Block::H8(_) | Block::Q18(_) => &[],
+        }
+    }
+
     /// The CAD surface that the elements are knot spans of.
     pub fn sheet(&self) -> Option<&crate::mesh::NurbsSheet> {
         match self {

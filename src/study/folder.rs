@@ -210,7 +210,11 @@ pub(super) fn quoted(word: &str) -> String {
 fn written(run: &Planned, fields: bool, files: &mut Files) -> Result<String, StudyError> {
     let mut scene = run.scene.clone();
     let mut places = Vec::new();
-    for (section, key) in [("bodies", "/mesh/file/path"), ("surfaces", "/cad/file")] {
+    for (section, key) in [
+        ("bodies", "/mesh/file/path"),
+        ("bodies", "/nurbs/file"),
+        ("surfaces", "/cad/file"),
+    ] {
         let members = scene.get(section).and_then(Json::as_object);
         let names = members.into_iter().flat_map(|m| m.keys());
         places.extend(names.map(|name| pointer(&[section, name]) + key));

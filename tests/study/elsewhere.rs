@@ -42,6 +42,29 @@ fn json_of(path: &Path) -> Value {
 
 const FAILING: &str = "/solution/newton/max_iterations";
 
+/// The faces that a shell is made of go with the scenes, as tools do: each scene can be run where it lies.
+#[test]
+fn faces_of_nurbs_shells_lie_beside_the_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let name = "shells_wrapped.json";
+    let mut study: Value =
+        serde_json::from_str(&read(&examples.join("studies").join(name))).unwrap();
+    study["scene"] = json!(examples.join("scenes/strip_over_cylinder.json"));
+    write(folder, "study.json", &study);
+    let output = covact(folder, &["study", "study.json", "-o", "out", "--jobs"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let out = folder.join("out");
+    let scene = json_of(&out.join("runs/010_NURBS_32_x_1/scene.json"));
+    assert_eq!(
+        scene["bodies"]["strip"]["nurbs"]["file"],
+        "../../files/flat.json"
+    );
+    let checked = covact(&out, &["check", "runs/010_NURBS_32_x_1/scene.json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+}
+
 #[test]
 fn a_job_says_by_name_how_its_run_ended() {
     let folder = tempfile::tempdir().unwrap();

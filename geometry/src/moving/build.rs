@@ -1,5 +1,6 @@
 //! Facets as they are given.
 
+use super::trimmed::Trims;
 use std::collections::HashMap;
 
 use super::extraction::Operator;
@@ -84,6 +85,7 @@ pub(super) struct Parts {
     known: HashMap<Vec<u64>, u32>,
     operator_of: Vec<u32>,
     source: Vec<u32>,
+    pub trims: Trims,
 }
 
 impl Parts {
@@ -139,6 +141,7 @@ impl Parts {
             source: self.source,
             topology,
             rational,
+            trims: self.trims,
             nets: vec![[0.0; 4]; count * points],
             boxes: vec![EMPTY_BOX; count],
             tree: None,

@@ -28,12 +28,14 @@ mod rational;
 mod search;
 mod smooth;
 mod topology;
+mod trimmed;
 
 use crate::project::tree::Tree;
 use crate::project::{EdgeKind, Hint, Status};
 use crate::surface::{Jet, Vec3};
 use extraction::Operator;
 use topology::Topology;
+use trimmed::Trims;
 
 pub use patch::PatchSpans;
 pub use smooth::CREASE;
@@ -62,6 +64,8 @@ pub struct MovingFacets {
     topology: Topology,
     /// Whether facets have weights.
     rational: bool,
+    /// What is cut away of them.
+    trims: Trims,
     /// Control points (homogeneous), `(degree + 1)^2` of each facet, xi1 fastest.
     nets: Vec<[f64; 4]>,
     boxes: Vec<[Vec3; 2]>,
@@ -240,6 +244,7 @@ impl MovingFacets {
             source,
             topology,
             rational: _,
+            trims,
             nets,
             boxes,
             tree,
@@ -251,6 +256,7 @@ impl MovingFacets {
             + heap(operators)
             + operators.iter().map(|o| o.bytes()).sum::<usize>()
             + topology.bytes()
+            + trims.bytes()
             + heap(nets)
             + heap(boxes)
             + tree.as_ref().map_or(0, |t| t.bytes())

@@ -4,9 +4,10 @@ use super::build::Parts;
 use super::extraction::Operator;
 use super::net::bernstein;
 use super::topology::{Outline, Topology};
+use super::trimmed::Placed;
 use super::{MovingError, MovingFacets};
 use crate::basis::WIDTH;
-use crate::{NurbsPatch, PatchShape};
+use crate::{NurbsPatch, PatchShape, Trim};
 use nalgebra::Matrix4;
 
 /// Functions of a cubic that act on a span.
@@ -22,6 +23,11 @@ pub struct PatchSpans<'a> {
     /// Spans with a side that is joined to another patch, whose knots need not match (0: xi1 at its start, 1: at its end, 2: xi2
     /// at its start, 3: at its end): the surface does not end there.
     pub joined: &'a [(usize, usize)],
+    /// Trim of the patch, in its parameters.
+    pub trim: Option<&'a Trim>,
+    /// Spans that it cuts, ascending: there are no feet where it leaves nothing, and none on a curve of the trim beside those of points
+    /// above the patch.
+    pub cut: &'a [usize],
 }
 
 impl MovingFacets {
@@ -39,6 +45,8 @@ impl MovingFacets {
             patch,
             spans,
             joined: &[],
+            trim: None,
+            cut: &[],
         };
         Self::of_patches(&[part], reversed, |_, n| number(n))
     }
@@ -72,7 +80,10 @@ impl MovingFacets {
                 patch,
                 spans,
                 joined,
+                trim,
+                cut,
             } = part;
+            let trim = trim.map(|trim| set.trims.push(trim));
             let counts = [0, 1].map(|dir| patch.basis(dir).span_count());
             let fits = spans.iter().all(|span| *span < counts[0] * counts[1]);
             if patch.degree() != [M - 1; 2] || !fits {
@@ -116,6 +127,14 @@ impl MovingFacets {
                     false => Operator::new(rows),
                 };
                 set.push(facet, &nodes, operator)?;
+                if let (Some(trim), Ok(_)) = (trim, cut.binary_search(span)) {
+                    let placed = Placed {
+                        trim,
+                        range: [0, 1].map(|dir| patch.basis(dir).span_range(at[dir])),
+                        exchanged: reversed,
+                    };
+                    set.trims.place(facet, placed);
+                }
                 for (_, side) in joined.iter().filter(|(of, _)| of == span) {
                     borders.push((facet, if reversed { (side + 2) % 4 } else { *side }));
                 }
@@ -272,6 +291,8 @@ mod tests {
                     patch,
                     spans,
                     joined,
+                    trim: None,
+                    cut: &[],
                 };
                 let [left, right]: [&[_]; 2] = match joined {
                     true => [&[(0, 1), (1, 1)], &[(0, 0), (1, 0), (2, 0)]],

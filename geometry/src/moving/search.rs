@@ -3,7 +3,7 @@
 use super::local::{ALL, Local, Problem};
 use super::prove::{Verdict, judge, judge_rational};
 use super::topology::{corner_xi, on_edge};
-use super::{MovingFacets, MovingFoot, net};
+use super::{MovingFacets, MovingFoot, MovingPlace, net};
 use crate::project::ball::outside_ball;
 use crate::project::{Hint, Status};
 use crate::surface::Vec3;
@@ -12,6 +12,8 @@ use crate::surface::Vec3;
 const MOST_PARTS: usize = 20_000;
 /// Most cuts of a part: each halves it.
 const DEEPEST: usize = 56;
+/// Sine of the angle between the normal and a distance that leans over a border.
+const ASIDE: f64 = 1e-3;
 /// Most facets that the winner of a search is moved through at the end.
 const HOPS: usize = 8;
 
@@ -91,6 +93,9 @@ impl MovingFacets {
         let (facet, local) = search.best?;
         let (facet, local) = self.settle::<M>(q, facet, &local, accept);
         let (place, normal) = self.place::<M>(facet, &local, accept);
+        if place == MovingPlace::Face && self.trims.any() && held_aside(&local) {
+            return None;
+        }
         let distance = local.d2.sqrt();
         let status = if !complete {
             Status::NotConverged
@@ -160,6 +165,9 @@ impl MovingFacets {
                 }
                 let mut t = problem(facet).solve::<M>(xi);
                 problem(facet).refine::<M>(&mut t);
+                if !self.trims.holds(facet, t.xi) {
+                    return;
+                }
                 let now = nearer.as_ref().map_or(s.d2, |n| n.1.d2);
                 // Equally near but not held by its border is better.
                 let free = s.active != [false; 2] && t.active == [false; 2] && t.converged;
@@ -241,6 +249,9 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
     #[inline]
     fn offer(&mut self, facet: u32, local: &Local) {
         let distance = local.d2.sqrt();
+        if !self.set.trims.holds(facet, local.xi) {
+            return;
+        }
         if distance < self.distance || self.best.is_none() && distance <= self.reach {
             let tolerance = 1e-11 * self.set.size + 1e-14 * distance;
             self.distance = distance;
@@ -385,6 +396,15 @@ impl<'a, const M: usize, const L: usize> Search<'a, M, L> {
             }
         }
     }
+}
+
+/// Whether a border holds a foot for a point that lies beside it. Where the surface runs on smoothly, what a trim cuts away behind the
+/// border holds the true foot: there is none.
+fn held_aside(local: &Local) -> bool {
+    (0..2).any(|k| {
+        let size = local.metric[2 * k].sqrt() * local.d2.sqrt();
+        local.active[k] && local.gradient[k].abs() > ASIDE * size
+    })
 }
 
 /// Where the mean plane of a facet is nearest.

@@ -4,12 +4,14 @@
 //! crosses the loops an odd number of times, so the direction of loops does not matter. When a trim is made its curves are
 //! cut into monotone pieces with a tree over them; a test then costs O(log n) for n pieces.
 
+mod along;
 mod attach;
 mod cells;
 mod index;
 mod monotone;
 mod polygon;
 
+pub use along::CurvePart;
 pub use attach::{TrimNote, TrimNoteKind, Trimmed};
 pub use cells::RulePoint;
 pub use index::{BorderPoint, Part};

@@ -105,7 +105,8 @@ pub(crate) mod sizes {
     /// Where the tangents of seams go, and room for one.
     pub fn seams(model: &Model) -> usize {
         let all = model.bodies.iter().map(|b| b.block.seams().len());
-        Seams::size(all.sum())
+        let springs = model.bodies.iter().map(|b| b.block.anchors().len());
+        Seams::size(all.sum(), springs.sum())
     }
 
     /// Where the tangents of follower loads go.

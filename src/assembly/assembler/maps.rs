@@ -12,7 +12,7 @@ use crate::model::{Model, PairModel};
 pub(super) struct Maps {
     pub elements: Vec<u32>,
     pub kinds: Vec<Kind>,
-    /// Of the seams of all bodies.
+    /// Of the seams of all bodies, then of their springs.
     pub seams: Vec<u32>,
     /// Per pair with a rigid master.
     pub points: PerPair<PointMaps>,
@@ -130,6 +130,9 @@ pub(super) fn pattern(
         for seam in body.block.seams() {
             add(&seam.nodes.map(|n| n + body.first_node));
         }
+        for spring in body.block.anchors() {
+            add(&spring.nodes.map(|n| n + body.first_node));
+        }
     }
     for (index, pair) in model.pairs.iter().enumerate() {
         let couplings = couplings.get(index);
@@ -179,6 +182,11 @@ impl Maps {
         for body in &model.bodies {
             for seam in body.block.seams() {
                 pattern.element_map(&seam.nodes.map(|n| n + body.first_node), &mut seams)?;
+            }
+        }
+        for body in &model.bodies {
+            for spring in body.block.anchors() {
+                pattern.element_map(&spring.nodes.map(|n| n + body.first_node), &mut seams)?;
             }
         }
         seams.shrink_to_fit();

@@ -1,12 +1,12 @@
-//! Seams between the patches of a body, one after the other.
+//! Seams between the patches of a body, one after the other, and springs that hold curves of trims.
 use super::elements::pairs;
 use super::{Assembler, Totals, put};
 use crate::contact::law::PairLaw;
 use crate::model::state::heap;
-use crate::shell::{SEAM_DOFS, SEAM_NODES};
+use crate::shell::{ANCHOR_DOFS, ANCHOR_NODES, SEAM_DOFS, SEAM_NODES};
 use covact_geometry::Vec3;
 
-/// Places of the seams of all bodies in the matrix, and room for one.
+/// Places of the seams of all bodies in the matrix, then of all springs, and room for one.
 #[derive(Debug, Default)]
 pub(super) struct Seams {
     maps: Vec<u32>,
@@ -26,10 +26,15 @@ impl Seams {
         }
     }
 
-    /// Bytes of heap for so many seams.
-    pub fn size(count: usize) -> usize {
-        let room = if count > 0 { SEAM_DOFS * SEAM_DOFS } else { 0 };
-        count * pairs(SEAM_NODES) * size_of::<u32>() + room * size_of::<f64>()
+    /// Bytes of heap for so many seams and springs.
+    pub fn size(count: usize, springs: usize) -> usize {
+        let room = if count + springs > 0 {
+            SEAM_DOFS * SEAM_DOFS
+        } else {
+            0
+        };
+        let places = count * pairs(SEAM_NODES) + springs * pairs(ANCHOR_NODES);
+        places * size_of::<u32>() + room * size_of::<f64>()
     }
 
     /// Bytes of heap that it holds.
@@ -44,7 +49,7 @@ impl Seams {
 }
 
 impl<L: PairLaw> Assembler<'_, L> {
-    /// Adds forces, energy and, where asked for, the tangent of all seams.
+    /// Adds forces, energy and, where asked for, the tangent of all seams and springs.
     pub(super) fn seams<const TANGENT: bool>(
         &mut self,
         u: &[f64],
@@ -77,6 +82,38 @@ impl<L: PairLaw> Assembler<'_, L> {
                     &nodes,
                     map,
                     &mut self.seams.tangent,
+                    increments,
+                    rhs,
+                );
+            }
+        }
+        let mut f = [0.0; ANCHOR_DOFS];
+        for body in &self.model.bodies {
+            for spring in body.block.anchors() {
+                let nodes = spring.nodes.map(|n| n + body.first_node);
+                let own = nodes.map(|n| Vec3::from_column_slice(&u[3 * n as usize..][..3]));
+                let room = &mut self.seams.tangent[..];
+                let tangent = match room.get_mut(..ANCHOR_DOFS * ANCHOR_DOFS) {
+                    Some(room) if TANGENT => Some(room),
+                    _ => None,
+                };
+                totals.internal_energy += spring.evaluate(&own, &mut f, tangent);
+                for (f, &n) in f.chunks_exact(3).zip(&nodes) {
+                    (0..3).for_each(|c| residual[3 * n as usize + c] += f[c]);
+                }
+                if !TANGENT {
+                    continue;
+                }
+                let count = pairs(ANCHOR_NODES);
+                let map = &self.seams.maps[at..at + count];
+                at += count;
+                put(
+                    &mut self.matrix,
+                    self.dofs,
+                    &mut self.work,
+                    &nodes,
+                    map,
+                    &mut self.seams.tangent[..ANCHOR_DOFS * ANCHOR_DOFS],
                     increments,
                     rhs,
                 );

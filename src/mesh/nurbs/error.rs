@@ -5,11 +5,6 @@ use covact_geometry::patch::PatchError;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NurbsError {
-    /// Part of the patch is cut away, and there are others.
-    #[error(
-        "the face is trimmed: several faces are one shell only where all of them are whole patches"
-    )]
-    Trimmed,
     /// A trim leaves nothing of the patch.
     #[error("the trim of the face leaves nothing of it")]
     Empty,

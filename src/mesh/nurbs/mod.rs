@@ -1,5 +1,7 @@
 //! CAD surfaces as thin shells: one NURBS patch is the mid-surface, its knot spans are the elements, its control points the
 //! nodes.
+mod anchors;
+mod borders;
 mod edges;
 mod error;
 mod refine;
@@ -8,6 +10,9 @@ mod select;
 mod trims;
 
 use super::{ElementKind, Face, Mesh};
+pub use anchors::Anchor;
+pub(crate) use borders::width_across;
+pub use borders::{Border, BorderPoint, TrimEdge};
 use covact_geometry::{NurbsPatch, PatchShape, Vec3};
 pub use error::NurbsError;
 pub use refine::Fineness;
@@ -120,8 +125,10 @@ pub struct NurbsSheet {
     pub thickness: f64,
     /// Membrane strains are assumed.
     pub assumed_membrane: bool,
-    /// Edges that each set of nodes is made of, where it is made of edges.
-    pub edge_sets: BTreeMap<String, Vec<Edge>>,
+    /// Borders that each set of nodes is made of, where it is made of borders.
+    pub edge_sets: BTreeMap<String, Vec<Border>>,
+    /// Points of curves of trims that have a node of their own, which supports hold; their nodes follow the control points.
+    pub anchors: Vec<Anchor>,
 }
 
 /// Sign of a face of a sheet: its outward normal along the normal of the mid-surface. None for other numbers than 4, the bottom,
@@ -231,19 +238,17 @@ impl NurbsSheet {
         }
     }
 
-    /// The seam with the largest angle between the normals of its two sides, and that angle (degrees); none without seams.
-    pub fn sharpest_fold(&self) -> Option<(&Seam, f64)> {
-        let normal = |edge: Edge, s: f64| {
-            let patch = &self.patches[edge.patch()].patch;
-            let jet = patch.jet(seams::Curve::new(patch, edge).xi(s));
+    /// The seam with the largest angle between the normals of its two sides, and that angle (degrees); none without seams. All seams
+    /// are looked at, or those along curves of trims.
+    pub fn sharpest_fold(&self, trims: bool) -> Option<(&Seam, f64)> {
+        let normal = |edge: Border, s: f64| {
+            let part = &self.patches[edge.patch()];
+            let jet = part.patch.jet(part.line(edge).xi(s));
             jet.rho_i[0].cross(&jet.rho_i[1])
         };
         let angle = |seam: &Seam| {
             let [a, b] = seam.edges;
-            let other = &self.patches[b.patch()].patch;
-            let other = seams::Curve::new(other, b);
-            let own = &self.patches[a.patch()].patch;
-            let own = seams::Curve::new(own, a);
+            let [own, other] = [a, b].map(|border| self.curve(border));
             let [low, high] = seam.ranges[0];
             (0..=8)
                 .map(|k| {
@@ -254,8 +259,19 @@ impl NurbsSheet {
                 })
                 .fold(0.0, f64::max)
         };
-        let all = self.joints.seams.iter().map(|seam| (seam, angle(seam)));
+        let of_trim = |seam: &&Seam| seam.edges.iter().any(|e| matches!(e, Border::Trim(_)));
+        let seams = self.joints.seams.iter();
+        let all = seams.filter(|seam| !trims || of_trim(seam));
+        let all = all.map(|seam| (seam, angle(seam)));
         all.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// A border as a curve, from its first end to its last.
+    pub(crate) fn curve(&self, border: Border) -> seams::Curve<'_> {
+        let part = &self.patches[border.patch()];
+        let line = part.line(border);
+        let whole = line.whole();
+        seams::Curve::new(&part.patch, border, line, whole)
     }
 
     /// Number of connected parts.
@@ -358,7 +374,6 @@ impl NurbsSheet {
                 .map(|element| Face { element, face })
                 .collect()
         };
-        let mut edge_sets: Vec<(String, Vec<Edge>)> = Vec::new();
         let several = self.patches.len() > 1;
         for (k, part) in self.patches.iter().enumerate() {
             let spans = part.spans();
@@ -368,11 +383,6 @@ impl NurbsSheet {
                     let middle = [0.5 * (u[0] + u[1]), 0.5 * (v[0] + v[1])];
                     part.patch.shape_in_span([i, j], middle, &mut room);
                     connectivity.extend(room.indices.iter().map(|n| n + part.first_node));
-                }
-            }
-            for edge in Edge::of(k) {
-                if !self.joints.inner.contains(&edge) && part.keeps(edge) {
-                    edge_sets.push((self.edge_name(edge), vec![edge]));
                 }
             }
             let corners = part.corners().into_iter().enumerate();
@@ -390,13 +400,9 @@ impl NurbsSheet {
                 }
             }
         }
-        if several {
-            edge_sets.push(("rim".to_owned(), self.free_edges()));
-        }
-        for (name, edges) in edge_sets {
-            let own = edges.iter().flat_map(|edge| self.row(*edge, 0));
-            node_sets.insert(name.clone(), sorted(own.collect()));
-            self.edge_sets.insert(name, edges);
+        self.edge_sets = self.named_borders();
+        for (name, borders) in &self.edge_sets {
+            node_sets.insert(name.clone(), self.border_nodes(borders));
         }
         for (name, face) in [("bottom", 4), ("top", 5)] {
             node_sets.insert(name.to_owned(), (0..nodes.len() as u32).collect());

@@ -1,5 +1,5 @@
 //! A patch as a file gives it made bicubic and fine, without a change of shape.
-use super::{Cut, DEGREE, Edge, Joints, NurbsError, NurbsSheet, SheetPatch};
+use super::{Border, Cut, DEGREE, Joints, NurbsError, NurbsSheet, Seam, SheetPatch};
 use covact_geometry::{NurbsPatch, Vec3};
 use std::collections::BTreeMap;
 
@@ -48,14 +48,11 @@ impl NurbsSheet {
         assumed_membrane: bool,
     ) -> Result<NurbsSheet, (usize, NurbsError)> {
         let mut elements = 0;
-        let trimmed = faces.iter().position(|(_, p)| p.trim().is_some());
-        if let (Some(k), 2..) = (trimmed, faces.len()) {
-            return Err((k, NurbsError::Trimmed));
-        }
         let mut fine = Vec::with_capacity(faces.len());
         for (k, (_, patch)) in faces.iter().enumerate() {
+            let trim = patch.trim().cloned();
             let patch = refined(patch, fineness, &mut elements).map_err(|e| (k, e))?;
-            fine.push(patch);
+            fine.push(patch.with_trim(trim));
         }
         let all: Vec<&NurbsPatch> = fine.iter().collect();
         let mut joints = Joints::new(&all, thickness);
@@ -76,13 +73,13 @@ impl NurbsSheet {
         }
         let (mut first_node, mut first_element) = (0, 0);
         let mut patches = Vec::with_capacity(fine.len());
-        for ((patch, reversed), (face, given)) in fine.into_iter().zip(turned).zip(faces) {
-            let cut = given.trim().and_then(|trim| Cut::new(&patch, trim));
+        for ((patch, reversed), (face, _)) in fine.into_iter().zip(turned).zip(faces) {
+            let cut = patch.trim().and_then(|trim| Cut::new(&patch, trim));
             if cut.as_ref().is_some_and(Cut::is_empty) {
                 return Err((patches.len(), NurbsError::Empty));
             }
             let part = SheetPatch {
-                patch,
+                patch: patch.with_trim(None),
                 face: *face,
                 reversed,
                 first_node,
@@ -99,6 +96,7 @@ impl NurbsSheet {
             thickness,
             assumed_membrane,
             edge_sets: BTreeMap::new(),
+            anchors: Vec::new(),
         })
     }
 }
@@ -106,7 +104,8 @@ impl NurbsSheet {
 /// Two patches that are joined along all of their edges and are near each other in their middle.
 fn twice(patches: &[&NurbsPatch], joints: &Joints, thickness: f64) -> Option<[usize; 2]> {
     let middle = |k: usize| patches[k].point(patches[k].domain().map(|[a, b]| 0.5 * (a + b)));
-    let pairs = joints.seams.iter().map(|seam| seam.edges.map(Edge::patch));
+    let whole = |seam: &&Seam| seam.edges.iter().all(|e| matches!(e, Border::Edge(_)));
+    let pairs = (joints.seams.iter().filter(whole)).map(|seam| seam.edges.map(Border::patch));
     pairs.clone().find(|pair| {
         pairs.clone().filter(|other| other == pair).count() >= 4
             && (middle(pair[0]) - middle(pair[1])).norm() < thickness

@@ -3,7 +3,8 @@
 //! An edge is compared with every other one by its closest points: where the distance is within the tolerance all along a part
 //! of both, the parts are a seam. Parts begin and end at the ends of either edge, so that knots need not match, an edge may run
 //! along several others, and three patches may meet in one.
-use super::{DEGREE, Edge};
+use super::borders::Line;
+use super::{Border, DEGREE};
 use covact_geometry::{NurbsPatch, PatchSet, Vec3};
 use std::cell::OnceCell;
 
@@ -19,18 +20,17 @@ const OF_LENGTH: f64 = 0.05;
 /// Points inside of a part that have to lie on the other edge.
 const INSIDE: usize = 9;
 
-/// +1 where the parameter along an edge goes round the patch counter-clockwise.
-const SENSE: [i8; 4] = [-1, 1, 1, -1];
-
-/// A part of two edges that is one curve.
+/// A part of two borders that is one curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seam {
-    /// Both edges.
-    pub edges: [Edge; 2],
+    /// Both borders.
+    pub edges: [Border; 2],
     /// Parameters along each, ascending.
     pub ranges: [[f64; 2]; 2],
     /// The parameters run against each other.
     pub opposed: bool,
+    /// Both patches are on one side of it, seen along the parameter of each.
+    pub same_sense: bool,
     /// Largest distance between both at the points that were compared (length).
     pub gap: f64,
 }
@@ -39,7 +39,7 @@ pub struct Seam {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Near {
     /// The free edge, and the edge that it runs near to.
-    pub edges: [Edge; 2],
+    pub edges: [Border; 2],
     /// Largest distance of the points that were compared (length).
     pub distance: f64,
 }
@@ -50,36 +50,36 @@ pub struct Joints {
     /// Parts of edges that are joined.
     pub seams: Vec<Seam>,
     /// Edges that are joined along all of their length.
-    pub inner: Vec<Edge>,
+    pub inner: Vec<Border>,
     /// Edges that are joined along some of it.
-    pub partial: Vec<Edge>,
+    pub partial: Vec<Border>,
     /// Free edges near others, to which they are not joined.
     pub near: Vec<Near>,
     /// Free edges that lie on the inside of a patch, as that of a rib, which is not joined.
-    pub inside: Vec<(Edge, usize)>,
+    pub inside: Vec<(Border, usize)>,
 }
 
-/// An edge as a curve.
+/// A part of a border as a curve.
 pub(crate) struct Curve<'a> {
     patch: &'a NurbsPatch,
-    edge: Edge,
+    border: Border,
+    pub line: Line<'a>,
     range: [f64; 2],
     samples: Vec<(f64, Vec3)>,
     length: f64,
 }
 
 impl<'a> Curve<'a> {
-    pub fn new(patch: &'a NurbsPatch, edge: Edge) -> Self {
-        let along = 1 - edge.direction();
-        let range = patch.domain()[along];
+    pub fn new(patch: &'a NurbsPatch, border: Border, line: Line<'a>, range: [f64; 2]) -> Self {
         let mut curve = Curve {
             patch,
-            edge,
+            border,
             range,
             samples: Vec::new(),
             length: 0.0,
+            line,
         };
-        for [a, b] in patch.spans(along) {
+        for [a, b] in curve.line.pieces(range) {
             let steps = 2 * (DEGREE + 1);
             for k in 0..steps {
                 let s = a + (b - a) * k as f64 / steps as f64;
@@ -92,20 +92,33 @@ impl<'a> Curve<'a> {
         curve
     }
 
-    /// Parameters of the patch.
-    pub fn xi(&self, s: f64) -> [f64; 2] {
-        let across = self.edge.direction();
-        let mut xi = [s; 2];
-        xi[across] = self.patch.domain()[across][usize::from(self.edge.at_end())];
-        xi
+    /// All of a border, in parts without corners that are not closed.
+    fn of(patch: &'a NurbsPatch, border: Border) -> Vec<Self> {
+        let line = Line::new(patch, patch.trim(), border);
+        let part = |range: &[f64; 2]| {
+            let [a, b] = *range;
+            let at = [0, 1, 2, 3].map(|k| a + (b - a) * f64::from(k) / 3.0);
+            let x = at.map(|s| patch.point(line.xi(s)));
+            let closed = (x[3] - x[0]).norm() < 1e-3 * (x[2] - x[1]).norm();
+            match closed {
+                true => at.windows(2).map(|w| [w[0], w[1]]).collect(),
+                false => vec![*range],
+            }
+        };
+        let ranges: Vec<[f64; 2]> = line.ranges().iter().flat_map(part).collect();
+        (ranges.into_iter())
+            .map(|range| Curve::new(patch, border, line.clone(), range))
+            .collect()
     }
 
     pub fn point(&self, s: f64) -> Vec3 {
-        self.patch.point(self.xi(s))
+        self.patch.point(self.line.xi(s))
     }
 
     fn tangent(&self, s: f64) -> Vec3 {
-        self.patch.jet(self.xi(s)).rho_i[1 - self.edge.direction()]
+        let [x, y] = self.line.direction(s);
+        let jet = self.patch.jet(self.line.xi(s));
+        jet.rho_i[0] * x + jet.rho_i[1] * y
     }
 
     /// The closest point of the edge, and its distance.
@@ -174,7 +187,9 @@ impl<'a> Curve<'a> {
             let run = if opposed { from > to } else { from < to };
             if run {
                 out.push(Seam {
-                    edges: [self.edge, other.edge],
+                    edges: [self.border, other.border],
+                    same_sense: self.line.is_counter_clockwise()
+                        == other.line.is_counter_clockwise(),
                     ranges: [[a, b], [from.min(to), from.max(to)]],
                     opposed,
                     gap,
@@ -199,7 +214,8 @@ impl Joints {
             return out;
         }
         let curves: Vec<Curve> = (patches.iter().enumerate())
-            .flat_map(|(k, patch)| Edge::of(k).map(|edge| Curve::new(patch, edge)))
+            .flat_map(|(k, patch)| Border::all(k, patch, patch.trim()).into_iter())
+            .flat_map(|border| Curve::of(patches[border.patch()], border))
             .collect();
         let boxes: Vec<[Vec3; 2]> = curves.iter().map(Curve::bounds).collect();
         let low = boxes.iter().fold(boxes[0][0], |low, b| low.inf(&b[0]));
@@ -212,7 +228,7 @@ impl Joints {
         };
         for i in 0..curves.len() {
             for j in i + 1..curves.len() {
-                let own = curves[i].edge.patch() == curves[j].edge.patch();
+                let own = curves[i].border.patch() == curves[j].border.patch();
                 if !own && !apart(i, j, tolerance) {
                     out.seams.extend(curves[i].on(&curves[j], tolerance));
                 }
@@ -224,40 +240,47 @@ impl Joints {
             surfaces[k].get_or_init(|| PatchSet::new(vec![patches[k].clone()], None).ok())
         };
         let extents: Vec<[Vec3; 2]> = patches.iter().map(|p| p.bounds()).collect();
-        for (i, curve) in curves.iter().enumerate() {
-            let free = out.free(curve);
-            let whole = curve.range[1] - curve.range[0];
-            let left: f64 = free.iter().map(|[a, b]| b - a).sum();
+        let free: Vec<Vec<[f64; 2]>> = curves.iter().map(|c| out.free(c)).collect();
+        let mut at = 0;
+        for group in curves.chunk_by(|a, b| a.border == b.border) {
+            let own = at..at + group.len();
+            at = own.end;
+            let whole: f64 = group.iter().map(|c| c.range[1] - c.range[0]).sum();
+            let left: f64 = free[own].iter().flatten().map(|[a, b]| b - a).sum();
             if left < 1e-3 * whole {
-                out.inner.push(curve.edge);
+                out.inner.push(group[0].border);
+            } else if left < (1.0 - 1e-3) * whole {
+                out.partial.push(group[0].border);
+            }
+        }
+        for (i, curve) in curves.iter().enumerate() {
+            let free = &free[i];
+            if out.inner.contains(&curve.border) {
                 continue;
             }
-            if left < (1.0 - 1e-3) * whole {
-                out.partial.push(curve.edge);
-            }
             for (j, other) in curves.iter().enumerate() {
-                let own = curve.edge.patch() == other.edge.patch();
-                let known = |n: &Near| n.edges == [other.edge, curve.edge];
+                let own = curve.border.patch() == other.border.patch();
+                let known = |n: &Near| n.edges == [other.border, curve.border];
                 if own || apart(i, j, thickness) || out.near.iter().any(known) {
                     continue;
                 }
-                for [a, b] in &free {
+                for [a, b] in free {
                     let at = |k: usize| curve.point(a + (b - a) * 0.25 * k as f64);
                     let distances = [1, 2, 3].map(|k| other.foot(&at(k)).1);
                     let distance = distances.into_iter().fold(0.0, f64::max);
                     if distance <= thickness {
-                        let edges = [curve.edge, other.edge];
+                        let edges = [curve.border, other.border];
                         out.near.push(Near { edges, distance });
                         break;
                     }
                 }
             }
             for (k, [low, high]) in extents.iter().enumerate() {
-                let told = |n: &Near| n.edges.contains(&curve.edge);
+                let told = |n: &Near| n.edges.contains(&curve.border);
                 let far = (0..3).any(|c| {
                     boxes[i][0][c] > high[c] + thickness || boxes[i][1][c] < low[c] - thickness
                 });
-                if far || k == curve.edge.patch() || out.near.iter().any(told) {
+                if far || k == curve.border.patch() || out.near.iter().any(told) {
                     continue;
                 }
                 let on = |[a, b]: &[f64; 2]| {
@@ -268,7 +291,7 @@ impl Joints {
                     (1..=3).all(|m| near(&curve.point(a + (b - a) * 0.25 * f64::from(m))))
                 };
                 if free.iter().any(on) {
-                    out.inside.push((curve.edge, k));
+                    out.inside.push((curve.border, k));
                 }
             }
         }
@@ -279,13 +302,13 @@ impl Joints {
     fn free(&self, curve: &Curve) -> Vec<[f64; 2]> {
         let mut taken: Vec<[f64; 2]> = (self.seams.iter())
             .flat_map(|seam| [0, 1].map(|k| (seam.edges[k], seam.ranges[k])))
-            .filter(|(edge, _)| *edge == curve.edge)
+            .filter(|(edge, _)| *edge == curve.border)
             .map(|(_, range)| range)
             .collect();
         taken.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let [mut from, end] = curve.range;
-        let mut free = Vec::new();
-        for [a, b] in taken {
+        let [start, end] = curve.range;
+        let (mut from, mut free) = (start, Vec::new());
+        for [a, b] in taken.into_iter().filter(|[a, b]| *b > start && *a < end) {
             if a > from {
                 free.push([from, a]);
             }
@@ -314,9 +337,8 @@ impl Joints {
         let links: Vec<([usize; 2], bool)> = (self.seams.iter())
             .filter(|seam| !branches(seam))
             .map(|seam| {
-                let sense = seam.edges.map(|e| SENSE[e.side()]);
-                let same = (sense[0] == sense[1]) != seam.opposed;
-                (seam.edges.map(Edge::patch), same)
+                let same = seam.same_sense != seam.opposed;
+                (seam.edges.map(Border::patch), same)
             })
             .collect();
         let mut turned: Vec<Option<bool>> = vec![None; patches];

@@ -1,7 +1,7 @@
 //! Selections by geometry on a sheet: control points do not lie on the surface, so nodes are chosen as whole edges, or corners.
 use super::super::sets::{boxed, corners, not_negative, outside_box, slack, unit, vector, words};
 use super::super::{Face, Mesh, MeshError};
-use super::{Edge, Kept, NurbsSheet, SheetPatch, side, sorted};
+use super::{Border, Kept, NurbsSheet, SheetPatch, side, sorted};
 use crate::scene::{Corners, Selection};
 use covact_geometry::Vec3;
 
@@ -9,7 +9,8 @@ use covact_geometry::Vec3;
 const ALONG: usize = 17;
 
 impl NurbsSheet {
-    /// Adds what `selection` finds as a set of the mesh: edges that lie in it as a whole, else corners; or faces of elements.
+    /// Adds what `selection` finds as a set of the mesh: edges and curves of trims that lie in it as a whole, else corners; or faces
+    /// of elements.
     ///
     /// # Errors
     /// As [`Mesh::add_set`].
@@ -31,7 +32,7 @@ impl NurbsSheet {
             mesh.face_sets.insert(name.to_owned(), faces);
             return Ok(());
         }
-        let miss = |edge: &Edge| {
+        let miss = |edge: &Border| {
             let all = self.along(*edge);
             all.iter().map(|x| picked.miss(x)).fold(0.0, f64::max)
         };
@@ -40,7 +41,7 @@ impl NurbsSheet {
             nearest = nearest.min(miss);
             miss <= picked.slack
         };
-        let edges: Vec<Edge> = (self.free_edges().into_iter())
+        let edges: Vec<Border> = (self.free_borders().into_iter())
             .filter(|edge| within(miss(edge)))
             .collect();
         let kept = |p: &SheetPatch| {
@@ -56,7 +57,7 @@ impl NurbsSheet {
             .collect();
         let nodes = match edges.is_empty() {
             true => corners,
-            false => edges.iter().flat_map(|e| self.row(*e, 0)).collect(),
+            false => self.border_nodes(&edges),
         };
         if nodes.is_empty() {
             return Err(picked.nothing("whole edge or corner", nearest, "length units"));
@@ -68,19 +69,14 @@ impl NurbsSheet {
         Ok(())
     }
 
-    /// Points along an edge.
-    fn along(&self, edge: Edge) -> Vec<Vec3> {
-        let patch = &self.patches[edge.patch()].patch;
-        let domain = patch.domain();
-        let across = edge.direction();
-        let [a, b] = domain[1 - across];
-        (0..ALONG)
-            .map(|k| {
-                let mut xi = [a + (b - a) * k as f64 / (ALONG - 1) as f64; 2];
-                xi[across] = domain[across][usize::from(edge.at_end())];
-                patch.point(xi)
-            })
-            .collect()
+    /// Points along a border.
+    fn along(&self, border: Border) -> Vec<Vec3> {
+        let part = &self.patches[border.patch()];
+        let line = part.line(border);
+        let points = line.ranges().iter().flat_map(|[a, b]| {
+            (0..ALONG).map(move |k| a + (b - a) * k as f64 / (ALONG - 1) as f64)
+        });
+        points.map(|s| part.patch.point(line.xi(s))).collect()
     }
 
     /// Faces that a selection of faces finds; none for a selection of nodes.

@@ -3,16 +3,13 @@
 //! Elements that a curve of the trim cuts are integrated over what is left of them: along the curve, in groups of sixteen points.
 //! Elements and control points keep their numbers; those that are cut away are of no element's part, and control points that act
 //! on nothing follow their neighbours.
-use super::{Edge, NurbsSheet, SheetPatch};
+use super::{NurbsSheet, SheetPatch};
 use covact_geometry::{NurbsPatch, PatchShape, RulePoint, Trim};
 
 /// Points of a group.
 pub const GROUP: usize = 16;
 
-/// Points of an edge's span at which it is looked at.
-const ALONG: usize = 9;
-
-/// How far from an edge, as a part of the patch.
+/// How far from a corner it is looked at, as a part of the patch.
 const BESIDE: f64 = 1e-7;
 
 /// What is left of an element.
@@ -26,21 +23,13 @@ pub enum Kept {
     Nothing,
 }
 
-/// How much of an edge is left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Left {
-    All,
-    Part,
-    Nothing,
-}
-
 /// What a trim leaves of a patch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cut {
+    /// The trim, in the parameters of the patch.
+    trim: Trim,
     /// By span, xi1 fastest.
     spans: Vec<Kept>,
-    /// Edges, by how many of the points looked at are left: none, some or all.
-    edges: [Left; 4],
     /// Corners that are left.
     corners: [bool; 4],
 }
@@ -71,31 +60,6 @@ impl Cut {
             return None;
         }
         let domain = patch.domain();
-        let edges = Edge::ALL.map(|edge| {
-            let (across, along) = (edge.direction(), 1 - edge.direction());
-            let [a, b] = domain[across];
-            let beside = match edge.at_end() {
-                false => a + BESIDE * (b - a),
-                true => b - BESIDE * (b - a),
-            };
-            let looked_at = [&u, &v][along].iter().flat_map(|[a, b]| {
-                (0..ALONG).map(move |k| a + (b - a) * (k as f64 + 0.5) / ALONG as f64)
-            });
-            let (mut found, mut missed) = (false, false);
-            for at in looked_at {
-                let mut xi = [beside; 2];
-                xi[along] = at;
-                match trim.contains(xi) {
-                    true => found = true,
-                    false => missed = true,
-                }
-            }
-            match (found, missed) {
-                (true, false) => Left::All,
-                (true, true) => Left::Part,
-                _ => Left::Nothing,
-            }
-        });
         let corners = std::array::from_fn(|c| {
             trim.contains(std::array::from_fn(|dir| {
                 let [a, b] = domain[dir];
@@ -104,10 +68,15 @@ impl Cut {
             }))
         });
         Some(Cut {
+            trim: trim.clone(),
             spans,
-            edges,
             corners,
         })
+    }
+
+    /// The trim.
+    pub fn trim(&self) -> &Trim {
+        &self.trim
     }
 
     /// Whether nothing is left.
@@ -132,11 +101,6 @@ impl SheetPatch {
         self.cut.as_ref().map_or(&Kept::Whole, |c| &c.spans[span])
     }
 
-    /// Whether something of an edge is left.
-    pub(super) fn keeps(&self, edge: Edge) -> bool {
-        (self.cut.as_ref()).is_none_or(|c| c.edges[edge.side()] != Left::Nothing)
-    }
-
     /// Whether a corner is left.
     pub(super) fn keeps_corner(&self, corner: usize) -> bool {
         self.cut.as_ref().is_none_or(|c| c.corners[corner])
@@ -153,12 +117,6 @@ impl NurbsSheet {
     /// Whether a trim cuts something away.
     pub fn is_trimmed(&self) -> bool {
         self.patches.iter().any(|p| p.cut.is_some())
-    }
-
-    /// Whether a trim cuts a part of an edge away.
-    pub fn is_edge_cut(&self, edge: Edge) -> bool {
-        let cut = self.patches[edge.patch()].cut.as_ref();
-        cut.is_some_and(|c| c.edges[edge.side()] != Left::All)
     }
 
     /// Elements of which something is left.

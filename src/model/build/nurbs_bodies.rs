@@ -10,14 +10,11 @@ use crate::contact::points::SlavePoint;
 use crate::fem::quadrature::QuadratureError;
 use crate::fem::{gauss, lobatto};
 use crate::machine::memory;
-use crate::mesh::nurbs::{Fineness, SheetPatch, side};
+use crate::mesh::nurbs::{Fineness, side};
 use crate::mesh::{Edge, Face, Mesh, NurbsError, NurbsSheet};
 use crate::scene::{self, Contact, Gap, NurbsSurface, Passes, Points, SetNames, Tangent};
 use crate::shell::{Block, Law, Memory, NurbsBlock, bytes_per_element};
-use covact_geometry::{MovingError, MovingFacets, NurbsPatch, PatchSpans, Vec3, io};
-
-/// Largest angle between neighbouring patches of a master (degrees): at a seam the side of a point is told by one of both normals.
-const STEEPEST: f64 = 89.0;
+use covact_geometry::{NurbsPatch, Vec3, io};
 
 /// Points along each direction of a face where the scene asks for none: as many as its polynomials have numbers.
 const POINTS: usize = 4;
@@ -71,6 +68,14 @@ impl Builder<'_> {
                 .at(|| format!("/bodies/{name}/sets/{set}"))
                 .map_err(|e| e.help(extent(name, &mesh)))?;
         }
+        // Supports hold curves of trims by nodes on them.
+        let supports = self.scene.supports.values();
+        let held = supports.flat_map(|s| s.on.places(""));
+        let sets = held.filter_map(|(_, reference)| {
+            let (body, set) = reference.split_once('.')?;
+            (body == name).then_some(set)
+        });
+        sheet.anchor(&mut mesh, sets);
         let block = NurbsBlock::new(&sheet, law).at(|| at("file"))?;
         self.tell_sheet(name, nurbs, &sheet);
         Ok((mesh, Block::Nurbs(Box::new(block))))
@@ -94,10 +99,14 @@ impl Builder<'_> {
                 false => "",
             }
         ));
-        if let [SheetPatch { cut: Some(cut), .. }] = &sheet.patches[..] {
-            let [_, parts, gone] = cut.counts();
+        let cut = sheet.patches.iter().filter_map(|p| p.cut.as_ref());
+        if sheet.is_trimmed() {
+            let [_, parts, gone] = cut.fold([0; 3], |sum, cut| {
+                let own = cut.counts();
+                [0, 1, 2].map(|k| sum[k] + own[k])
+            });
             self.notes.push(format!(
-                "body `{name}`: its trim cuts {parts} of the elements, which are integrated along it, and leaves nothing of {gone}"
+                "body `{name}`: trims cut {parts} of the elements, which are integrated along them, and leave nothing of {gone}"
             ));
         }
         if sheet.patches.len() == 1 {
@@ -127,18 +136,18 @@ impl Builder<'_> {
         for edge in &joints.partial {
             self.notes.push(format!(
                 "body `{name}`: `{}` is joined along a part of its length",
-                sheet.edge_name(*edge)
+                sheet.border_name(*edge)
             ));
         }
         for (edge, patch) in &joints.inside {
             self.warnings.push(format!(
                 "body `{name}`: the free edge `{}` lies on the inside of face {}, and is not joined to it: only edges are",
-                sheet.edge_name(*edge),
+                sheet.border_name(*edge),
                 sheet.patches[*patch].face
             ));
         }
         for near in &joints.near {
-            let [a, b] = near.edges.map(|e| sheet.edge_name(e));
+            let [a, b] = near.edges.map(|e| sheet.border_name(e));
             self.warnings.push(format!(
                 "body `{name}`: the free edge `{a}` runs within {} of `{b}`, less than the thickness, but is not joined to it: the gap \
                  is larger than CAD files leave",
@@ -276,7 +285,6 @@ impl Builder<'_> {
         on: &SetNames,
         at: &str,
     ) -> Result<Vec<FollowingSpan>, ModelError> {
-        self.whole_edges(on, at)?;
         let mut spans = Vec::new();
         for (pointer, reference) in on.places(at) {
             let (name, set) = reference.split_once('.').unwrap_or((reference, ""));
@@ -285,7 +293,7 @@ impl Builder<'_> {
             let edges = sheet.and_then(|(b, s)| Some((b, s, s.edge_sets.get(set)?)));
             let Some((body, sheet, edges)) = edges else {
                 let message = format!("`{reference}` is no edge of a body of kind `nurbs`");
-                let help = "a couple acts along edges: `edge.1` to `edge.4`, or a set of nodes that holds a whole edge";
+                let help = "a couple acts along edges: `edge.1` to `edge.4`, a curve of a trim (`trim.1`), or a set of nodes that holds a whole one";
                 return Err(text(pointer, message).help(help));
             };
             for edge in edges {
@@ -294,82 +302,6 @@ impl Builder<'_> {
             }
         }
         Ok(spans)
-    }
-
-    /// What a contact asks for that a face of a sheet as a master cannot do, or that nothing was tried of.
-    fn sheet_master(
-        &self,
-        contact: &Contact,
-        at: &impl Fn(&str) -> String,
-    ) -> Result<(), ModelError> {
-        let refuse = |field: &str, what: &str, help: &str| {
-            let message = format!(
-                "{what} do not go with the master `{}`, a face of a body of kind `nurbs`, yet",
-                contact.master
-            );
-            Err(text(at(field), message).help(help.to_owned()))
-        };
-        if matches!(contact.passes, Passes::TwoHalf | Passes::Edges) {
-            return refuse("passes", "two passes", "leave `passes` out");
-        }
-        if matches!(contact.points, Points::Segments(_)) {
-            return refuse("points", "integration segments", "take `{\"gauss\": 3}`");
-        }
-        if contact.gap == Gap::Averaged {
-            return refuse("gap", "averaged gaps", "leave `gap` out");
-        }
-        if contact.master_surface.is_some() {
-            return refuse(
-                "master_surface",
-                "kinds of surfaces",
-                "leave it out: the face is the exact surface",
-            );
-        }
-        if let Tangent::Published { .. } = contact.tangent {
-            return refuse("tangent", "published tangents", "take `exact`");
-        }
-        let index = self.body_index.get(contact.master.body());
-        let body = index.map(|i| &self.bodies[*i]);
-        if body.is_some_and(|b| b.block.sheet().is_some_and(|s| s.is_trimmed())) {
-            let message = format!(
-                "`{}` is a face that is trimmed, which cannot be a master yet",
-                contact.master
-            );
-            return Err(text(at("master"), message).help("exchange slave and master"));
-        }
-        let fold = (body.and_then(|b| b.block.sheet()))
-            .and_then(|s| s.sharpest_fold())
-            .filter(|(_, angle)| *angle > STEEPEST);
-        if let (Some(sheet), Some((seam, angle))) = (body.and_then(|b| b.block.sheet()), fold) {
-            let [a, b] = seam.edges.map(|e| sheet.patches[e.patch()].face);
-            let message = format!(
-                "`{}` is folded by {:.0} degrees between faces {a} and {b}: a face of a body of kind `nurbs` that is a master is folded by \
-                 {STEEPEST} degrees at most",
-                contact.master, angle
-            );
-            let help = "take the faces on one side of the fold as masters of contacts of their own";
-            return Err(text(at("master"), message).help(help));
-        }
-        Ok(())
-    }
-
-    /// Faces of a sheet as a master: its mid-surface, from which contact begins half of the thickness away. The faces are of one
-    /// side.
-    pub(super) fn sheet_facets(
-        &self,
-        body: usize,
-        faces: &[Face],
-    ) -> Option<Result<(MovingFacets, f64), MovingError>> {
-        let model = &self.bodies[body];
-        let sheet = model.block.sheet()?;
-        let spans: Vec<usize> = faces.iter().map(|f| f.element as usize).collect();
-        let bottom = faces.first().and_then(|f| side(*f)) == Some(-1.0);
-        let number = |n: u32| n + model.first_node;
-        let facets = sheet_master_facets(sheet, &spans, bottom, number);
-        Some(facets.map(|mut facets| {
-            facets.update(|n| self.nodes[n as usize]);
-            (facets, 0.5 * sheet.thickness)
-        }))
     }
 
     /// Slave points on faces of a sheet: at its Gauss points, half of the thickness from the mid-surface.
@@ -405,34 +337,6 @@ impl Builder<'_> {
     }
 }
 
-/// Spans of a sheet as a surface that others meet. Elements are of one side and ascend.
-fn sheet_master_facets(
-    sheet: &NurbsSheet,
-    elements: &[usize],
-    bottom: bool,
-    number: impl Fn(u32) -> u32,
-) -> Result<MovingFacets, MovingError> {
-    let spans: Vec<Vec<usize>> = (sheet.patches.iter())
-        .map(|part| {
-            let first = part.first_element as usize;
-            let own = first..first + part.elements();
-            let of_part = elements.iter().filter(|e| own.contains(e));
-            of_part.map(|e| e - first).collect()
-        })
-        .collect();
-    let joined: Vec<_> = (0..spans.len()).map(|k| sheet.joined_sides(k)).collect();
-    let parts: Vec<PatchSpans> = (sheet.patches.iter().zip(&spans).zip(&joined))
-        .map(|((part, spans), joined)| PatchSpans {
-            patch: &part.patch,
-            spans,
-            joined,
-        })
-        .collect();
-    MovingFacets::of_patches(&parts, bottom, |k, n| {
-        number(n + sheet.patches[k].first_node)
-    })
-}
-
 /// The edges of a sheet one of whose faces is loaded as a whole, as nodes of the model; none where a part of one is.
 pub(super) fn sheet_rims(
     sheet: &NurbsSheet,
@@ -466,7 +370,6 @@ pub(super) fn sheet_size(sheet: &NurbsSheet) -> FaceSize {
 /// A face that cannot be a sheet.
 fn refused(file: &str, elements: &str, label: &str, error: NurbsError) -> ModelError {
     let help = match &error {
-        NurbsError::Trimmed => Some("make a body of each face, or mesh them (`mesh`)"),
         NurbsError::Degree { .. } => Some("export it with degree 3 at most, or mesh it (`mesh`)"),
         NurbsError::Crease { .. } | NurbsError::Closed { .. } => {
             Some("cut the face there in the CAD program, and take one of its parts")

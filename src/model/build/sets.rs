@@ -155,7 +155,7 @@ impl Builder<'_> {
             let body = &self.bodies[*self.body_index.get(name)?];
             let sheet = body.block.sheet()?;
             for edge in sheet.edge_sets.get(set)? {
-                let own = sheet.edge_lengths(*edge).into_iter();
+                let own = sheet.border_lengths(*edge).into_iter();
                 shares.extend(own.map(|(node, length)| (node + body.first_node, length)));
             }
         }
@@ -164,27 +164,8 @@ impl Builder<'_> {
         Some(shares)
     }
 
-    /// # Errors
-    /// An edge of a sheet that a trim cuts, which bears no load.
-    pub(super) fn whole_edges(&self, on: &SetNames, at: &str) -> Result<(), ModelError> {
-        for (pointer, reference) in on.places(at) {
-            let (name, set) = split(reference);
-            let body = self.body_index.get(name).map(|i| &self.bodies[*i]);
-            let sheet = body.and_then(|b| b.block.sheet());
-            let edges = sheet.and_then(|s| Some((s, s.edge_sets.get(set)?)));
-            if edges.is_some_and(|(s, edges)| edges.iter().any(|e| s.is_edge_cut(*e))) {
-                let message = format!(
-                    "a trim cuts a part of `{reference}` away, and only whole edges bear loads yet"
-                );
-                return Err(text(pointer, message).help("support it, or load a face"));
-            }
-        }
-        Ok(())
-    }
-
     /// Share of each node in a total force: by length on edges of sheets, by tributary area on face sets, equal on node sets.
     pub(super) fn shares(&self, on: &SetNames, at: &str) -> Result<Vec<(u32, f64)>, ModelError> {
-        self.whole_edges(on, at)?;
         let mut all_faces = true;
         for (pointer, reference) in on.places(at) {
             all_faces &= self.is_face_set(reference, &pointer)?;

@@ -6,24 +6,27 @@
 //! held by an energy along the edge ([`HeldNormal`]).
 use super::super::Tied;
 use super::super::error::text;
-use super::{Builder, ModelError};
-use crate::mesh::{Edge, NurbsSheet};
+use super::{BodyModel, Builder, ModelError};
+use crate::mesh::{Border, Edge, NurbsSheet};
 use crate::scene::{Axis, Support};
 use crate::shell::HeldNormal;
 use crate::system::{ConstraintError, Dof, DofMapBuilder};
 use covact_geometry::Vec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Part of a length, or sine of an angle, that counts as round-off of a control net.
 const ROUND: f64 = 1e-9;
+
+/// Numbers of the anchors of a body that are held, with the components that are.
+pub(super) type HeldAnchors = Vec<(usize, [bool; 3])>;
 
 /// What supports ask of sheets beside prescribed displacements.
 #[derive(Default)]
 pub(super) struct SheetSupports {
     /// Degrees of freedom that go together, with the support that says so.
     ties: Vec<([u32; 2], u32)>,
-    /// Body, edge, and what the normal along it is held to.
-    pub held: Vec<(usize, Edge, HeldNormal)>,
+    /// Body, border, and what the normal along it is held to.
+    pub held: Vec<(usize, Border, HeldNormal)>,
 }
 
 impl Builder<'_> {
@@ -72,18 +75,30 @@ impl Builder<'_> {
             if support.clamped && edges.is_empty() {
                 let message =
                     format!("`{reference}` is no whole edge, and only edges can be clamped");
-                return Err(text(at, message)
-                    .help("take an edge (`edge.1` to `edge.4`), or a set of nodes that holds a whole edge"));
+                return Err(text(at, message).help(
+                    "take an edge (`edge.1` to `edge.4`), a curve of a trim (`trim.1`), or a set of nodes that holds a whole one",
+                ));
             }
             // A symmetry of all control points, as of plane problems, holds no normal.
-            if nodes.len() == sheet.nodes() {
+            if nodes.len() >= sheet.nodes() {
                 continue;
             }
             for edge in edges {
-                match support.symmetry {
-                    _ if support.clamped => out.clamp(sheet, body, *edge, first, index),
-                    Some(axis) => out.mirror(sheet, body, *edge, (first, component(axis)), index),
-                    None => {}
+                match (edge, support.symmetry) {
+                    (Border::Edge(edge), _) if support.clamped => {
+                        out.clamp(sheet, body, *edge, first, index);
+                    }
+                    (Border::Edge(edge), Some(axis)) => {
+                        out.mirror(sheet, body, *edge, (first, component(axis)), index);
+                    }
+                    (Border::Trim(_), _) if support.clamped => {
+                        out.held.push((body, *edge, HeldNormal::Clamped));
+                    }
+                    (Border::Trim(_), Some(axis)) => {
+                        let normal = Vec3::ith(component(axis), 1.0);
+                        out.held.push((body, *edge, HeldNormal::InPlane(normal)));
+                    }
+                    (_, None) => {}
                 }
             }
         }
@@ -129,6 +144,36 @@ fn extruded(sheet: &NurbsSheet, axis: usize) -> Option<Vec<Vec<u32>>> {
     all.map(|lines| lines.concat())
 }
 
+/// What is held of the anchors on curves of trims, by body; what is not held of them follows the control point that is nearest.
+///
+/// # Errors
+/// Degrees of freedom that are tied otherwise.
+pub(super) fn held_anchors(
+    bodies: &[BodyModel],
+    dofs: &mut DofMapBuilder,
+) -> Result<Vec<HeldAnchors>, ConstraintError> {
+    let mut out = Vec::with_capacity(bodies.len());
+    for body in bodies {
+        let mut own = Vec::new();
+        let anchors = body.block.sheet().map_or(&[][..], |s| &s.anchors);
+        for (k, anchor) in anchors.iter().enumerate() {
+            let dof = |node: u32, c: u32| 3 * (node + body.first_node) + c;
+            let held = [0, 1, 2].map(|c| dofs.get(dof(anchor.node, c)) == Some(Dof::Prescribed));
+            let p = &anchor.at.at;
+            let most = (0..16).max_by(|a, b| p.n[*a].total_cmp(&p.n[*b]));
+            for c in (0..3).filter(|c| !held[*c as usize]) {
+                let to = dof(p.nodes[most.unwrap_or_default()], c);
+                dofs.tie(dof(anchor.node, c), to, 1.0)?;
+            }
+            if held.contains(&true) {
+                own.push((k, held));
+            }
+        }
+        out.push(own);
+    }
+    Ok(out)
+}
+
 impl SheetSupports {
     fn plane_strain(&mut self, lines: &[Vec<u32>], first: u32, axis: usize, support: u32) {
         for line in lines {
@@ -151,7 +196,8 @@ impl SheetSupports {
         let size = spread.iter().map(|x| x.norm()).fold(0.0, f64::max);
         let flat = (0..3).find(|&c| spread.iter().all(|x| x[c].abs() <= ROUND * size));
         let Some(axis) = flat else {
-            self.held.push((body, edge, HeldNormal::Clamped));
+            self.held
+                .push((body, Border::Edge(edge), HeldNormal::Clamped));
             return;
         };
         for (edge, beside) in rows[0].iter().zip(&rows[1]) {
@@ -185,7 +231,8 @@ impl SheetSupports {
         });
         if !orthogonal {
             let normal = Vec3::ith(axis, 1.0);
-            self.held.push((body, edge, HeldNormal::InPlane(normal)));
+            let normal = HeldNormal::InPlane(normal);
+            self.held.push((body, Border::Edge(edge), normal));
             return;
         }
         for (edge, beside) in rows[0].iter().zip(&rows[1]) {
@@ -196,13 +243,15 @@ impl SheetSupports {
         }
     }
 
-    /// Ties everything that goes together to one of its members: to a prescribed one where there is any.
+    /// Ties everything that goes together to one of its members: to a prescribed one where there is any. `unused` nodes, which a trim
+    /// cuts away, follow others already.
     ///
     /// # Errors
     /// Degrees of freedom that are tied otherwise.
     pub fn tie(
         &self,
         dofs: &mut DofMapBuilder,
+        unused: &BTreeSet<u32>,
         owner: impl Fn(u32) -> Option<u32>,
     ) -> Result<Vec<Tied>, ConstraintError> {
         let mut parent: BTreeMap<u32, u32> = BTreeMap::new();
@@ -225,7 +274,7 @@ impl SheetSupports {
             parent.insert(a.max(b), a.min(b));
         }
         let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for dof in support.keys() {
+        for dof in support.keys().filter(|dof| !unused.contains(&(**dof / 3))) {
             let root = root(&mut parent, *dof);
             groups.entry(root).or_default().push(*dof);
         }

@@ -2,9 +2,9 @@
 use super::super::Tied;
 use super::super::constraints::{MeanPrescribed, Prescribed};
 use super::super::error::{At, number, text};
-use super::sheet_supports::SheetSupports;
+use super::sheet_supports::{HeldAnchors, SheetSupports, held_anchors};
 use super::{BodyModel, Builder, ModelError};
-use crate::mesh::{Edge, ThicknessColumns};
+use crate::mesh::{Border, ThicknessColumns};
 use crate::scene::{AUTOMATIC, Axis, POSITION_AND_TIME, Support, TimeFunction, Value};
 use crate::shell::HeldNormal;
 use crate::system::{Dof, DofMap, DofMapBuilder};
@@ -19,8 +19,10 @@ pub(super) struct Supports {
     pub means: Vec<MeanPrescribed>,
     pub tied: Vec<Tied>,
     pub dofs: DofMap,
-    /// Edges of sheets, by body, whose normal is held.
-    pub held_normals: Vec<(usize, Edge, HeldNormal)>,
+    /// Borders of sheets, by body, whose normal is held.
+    pub held_normals: Vec<(usize, Border, HeldNormal)>,
+    /// Of each body the anchors on curves of trims that are held.
+    pub held_anchors: Vec<HeldAnchors>,
 }
 
 /// Displacement over time, `None` standing for zero.
@@ -106,7 +108,11 @@ impl Builder<'_> {
             (all.dofs.prescribe(dof)).at(|| "/surfaces".to_owned())?;
         }
         let owner = |dof: u32| all.owners.get(&dof).map(|(support, _)| *support);
-        let tied = (sheets.tie(&mut all.dofs, owner)).at(|| "/supports".to_owned())?;
+        let unused: BTreeSet<u32> = (self.bodies.iter())
+            .filter_map(|body| Some((body.block.sheet()?, body.first_node)))
+            .flat_map(|(sheet, first)| sheet.unused().into_iter().map(move |[n, _]| n + first))
+            .collect();
+        let tied = (sheets.tie(&mut all.dofs, &unused, owner)).at(|| "/supports".to_owned())?;
         for body in &self.bodies {
             let unused = body.block.sheet().map(|s| s.unused());
             for pair in unused.into_iter().flatten() {
@@ -118,6 +124,8 @@ impl Builder<'_> {
                 }
             }
         }
+        let held_anchors =
+            held_anchors(&self.bodies, &mut all.dofs).at(|| "/supports".to_owned())?;
         let dofs = all.dofs.build().at(|| "/supports".to_owned())?;
         Ok(Supports {
             names: all.names,
@@ -126,6 +134,7 @@ impl Builder<'_> {
             tied,
             dofs,
             held_normals: sheets.held,
+            held_anchors,
         })
     }
 }
@@ -254,8 +263,14 @@ fn agree(others: &[(&Prescription, Vec3)], value: &Prescription, x: Vec3, end: f
 
 /// Constrained components of a support, `None` standing for zero.
 pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
+    let zero = |v: &Value| *v == Value::Number(0.0);
     if support.fixed || support.clamped {
-        return (0..3).map(|c| (c, None)).collect();
+        let moved = support.displacement.as_ref().filter(|_| support.clamped);
+        let value = |c: u32| {
+            let d = moved.map(|d| [&d.x, &d.y, &d.z][c as usize]);
+            d.and_then(|v| v.as_ref().filter(|v| !zero(v)).cloned())
+        };
+        return (0..3).map(|c| (c, value(c))).collect();
     }
     if let Some(axis) = support.symmetry.or(support.plane_strain) {
         let c = match axis {
@@ -268,7 +283,6 @@ pub(super) fn components(support: &Support) -> Vec<(u32, Option<Value>)> {
     let Some(d) = &support.displacement else {
         return Vec::new();
     };
-    let zero = |v: &Value| *v == Value::Number(0.0);
     ([&d.x, &d.y, &d.z].into_iter().enumerate())
         .filter_map(|(c, v)| {
             v.as_ref()

@@ -14,7 +14,11 @@ pub(super) fn check_support(c: &mut Checker, at: &str, support: &Support, sets: 
             ("clamped", support.clamped),
             ("symmetry", support.symmetry.is_some()),
             ("plane_strain", support.plane_strain.is_some()),
-            ("displacement", support.displacement.is_some()),
+            // Beside a clamp it says how that moves.
+            (
+                "displacement",
+                support.displacement.is_some() && !support.clamped,
+            ),
         ],
     );
     if let Some(components) = &support.displacement {

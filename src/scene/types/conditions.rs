@@ -4,7 +4,7 @@ use crate::scene::value::Value;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A support: exactly one of `fixed`, `clamped`, `symmetry`, `plane_strain`, `displacement`.
+/// A support: exactly one of `fixed`, `clamped`, `symmetry`, `plane_strain`, `displacement`; the last may also stand beside `clamped`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
@@ -13,8 +13,8 @@ pub struct Support {
     /// All three components are zero.
     #[serde(default)]
     pub fixed: bool,
-    /// All three components are zero, and the sheet does not turn about the edge; only for whole edges of a body of kind `nurbs`,
-    /// which `fixed` leaves hinged.
+    /// All three components are zero, and the sheet does not turn about the edge; only for edges and curves of trims of a body of kind
+    /// `nurbs`, which `fixed` leaves hinged. With `displacement` beside it the clamp moves as that says, without turning.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub clamped: bool,
     /// The displacement along this axis is zero; at an edge of a body of kind `nurbs` the sheet also stays at right angles to the
@@ -75,7 +75,7 @@ pub struct Load {
     /// Pressure against the outward normal (force / area). Expressions may use x, y, z and t; those of a follower t.
     #[serde(default)]
     pub pressure: Option<Value>,
-    /// Couple per undeformed length along edges of a body of kind `nurbs`, which turns with them (force); positive where it lifts
+    /// Couple per undeformed length along edges or curves of trims of a body of kind `nurbs`, which turns with them (force); positive where it lifts
     /// what would lie beyond the edge towards the top. Expressions may use t.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub couple: Option<Value>,

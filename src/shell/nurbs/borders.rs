@@ -1,15 +1,14 @@
-//! Edges of a sheet where its normal is held: clamped, or in a plane of symmetry. The condition is an energy per undeformed
+//! Borders of a sheet where its normal is held: clamped, or in a plane of symmetry. The condition is an energy per undeformed
 //! length, so that it needs no rotation and no particular control net.
 //!
 //! A clamped normal stays along its own direction `N`: `alpha (1 - N . n)`, which is `2 alpha sin^2` of half the angle between them.
 //! In a plane of symmetry with normal `e` it stays in the plane: `alpha (n . e)^2 / 2`.
 use super::super::kinematics::{V, dot};
 use super::frame::{DOFS, NODES, Normal, combine};
-use super::point::{BorderPoint, shapes};
+use super::point::BorderPoint;
 use super::{NurbsBlock, ShellError};
-use crate::fem::gauss;
-use crate::mesh::Edge;
-use covact_geometry::{PatchShape, Vec3};
+use crate::mesh::nurbs::Border;
+use covact_geometry::Vec3;
 use num_dual::DualNum;
 
 /// How stiff a held normal is, in bending stiffnesses over the length of an element: the sheet turns at its edge by one part in
@@ -18,6 +17,9 @@ const STIFF: f64 = 1e4;
 
 /// Points along a span.
 const POINTS: usize = 4;
+
+/// Points along a piece of a curve of a trim within an element, where full rules would lock.
+const TRIMMED: usize = 2;
 
 /// What the normal of an edge is held to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,14 +31,14 @@ pub enum HeldNormal {
 }
 
 impl NurbsBlock {
-    /// Holds the normal along some edges.
+    /// Holds the normal along some borders.
     ///
     /// # Errors
-    /// An edge where the surface has no normal.
-    pub fn hold(&mut self, edges: &[(Edge, HeldNormal)]) -> Result<(), ShellError> {
+    /// A border where the surface has no normal.
+    pub fn hold(&mut self, borders: &[(Border, HeldNormal)]) -> Result<(), ShellError> {
         let mut all: Vec<(usize, BorderPoint)> = Vec::new();
-        for (edge, to) in edges {
-            self.hold_edge(*edge, *to, &mut all)?;
+        for (border, to) in borders {
+            self.hold_border(*border, *to, &mut all)?;
         }
         all.sort_by_key(|(e, _)| *e);
         self.starts = match all.is_empty() {
@@ -66,59 +68,39 @@ impl NurbsBlock {
         })
     }
 
-    fn hold_edge(
+    fn hold_border(
         &self,
-        edge: Edge,
+        border: Border,
         to: HeldNormal,
         out: &mut Vec<(usize, BorderPoint)>,
     ) -> Result<(), ShellError> {
-        let part = &self.sheet.patches[edge.patch()];
-        let patch = &part.patch;
-        let spans = [patch.spans(0), patch.spans(1)];
-        let (across, along) = (edge.direction(), 1 - edge.direction());
-        let last = spans[across].len() - 1;
-        let (end, at) = match edge.at_end() {
-            false => (0, spans[across][0][0]),
-            true => (last, spans[across][last][1]),
+        let bending = self.bending();
+        let count = match border {
+            Border::Edge(_) => POINTS,
+            Border::Trim(_) => TRIMMED,
         };
-        let nu = self.law.nu();
-        let bending = self.law.young() * self.sheet.thickness.powi(3) / (12.0 * (1.0 - nu * nu));
-        let rule = gauss(POINTS).expect("a rule of four points exists");
-        let mut room = PatchShape::default();
-        for (k, range) in spans[along].iter().enumerate() {
-            let mut span = [end; 2];
-            span[along] = k;
-            let e = part.first_element as usize + span[0] + spans[0].len() * span[1];
-            for (s, w) in rule.iter() {
-                let mut xi = [at; 2];
-                xi[along] = 0.5 * (range[0] + range[1]) + 0.5 * s * (range[1] - range[0]);
-                let shape = shapes(patch, span, xi, &mut room);
-                let n = [shape.second[0], shape.second[1]];
-                let x = &self.reference[e];
-                let frame = Normal::new(n.each_ref().map(|n| combine(n, x)));
-                let length = |i: usize| dot(&frame.r[i], &frame.r[i]).sqrt();
-                let width = spans[across][end];
-                let across = length(across) * (width[1] - width[0]);
-                let stiffness =
-                    STIFF * bending / across * 0.5 * w * (range[1] - range[0]) * length(along);
-                if !(stiffness > 0.0 && stiffness.is_finite()) {
-                    return Err(ShellError::NoNormal { element: e as u32 });
-                }
-                let (toward, along) = match to {
-                    HeldNormal::Clamped => (frame.n, true),
-                    HeldNormal::InPlane(e) => (e.into(), false),
-                };
-                out.push((
-                    e,
-                    BorderPoint {
-                        n,
-                        toward,
-                        along,
-                        rest: dot(&frame.n, &toward),
-                        stiffness,
-                    },
-                ));
+        for p in self.sheet.border_points(border, count).iter().flatten() {
+            let e = p.element;
+            let x = &self.reference[e];
+            let frame = Normal::new(p.at.n_i.each_ref().map(|n| combine(n, x)));
+            let stiffness = STIFF * bending / p.width * p.length;
+            if !(stiffness > 0.0 && stiffness.is_finite()) {
+                return Err(ShellError::NoNormal { element: e as u32 });
             }
+            let (toward, along) = match to {
+                HeldNormal::Clamped => (frame.n, true),
+                HeldNormal::InPlane(e) => (e.into(), false),
+            };
+            out.push((
+                e,
+                BorderPoint {
+                    n: p.at.n_i,
+                    toward,
+                    along,
+                    rest: dot(&frame.n, &toward),
+                    stiffness,
+                },
+            ));
         }
         Ok(())
     }

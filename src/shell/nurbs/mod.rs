@@ -8,6 +8,7 @@
 //!
 //! Membrane strains are assumed (option): in the axes of the element they are interpolated biquadratically between nine points,
 //! at the knots and half-way, and keep the element's mean. Nine points integrate such an element, sixteen one without.
+mod anchors;
 mod borders;
 mod frame;
 mod plane_stress;
@@ -27,6 +28,7 @@ use super::material::Law;
 use crate::fem::gauss;
 use crate::mesh::NurbsSheet;
 use crate::mesh::nurbs::{GROUP, Kept};
+pub use anchors::{ANCHOR_DOFS, ANCHOR_NODES, AnchorSpring};
 pub use borders::HeldNormal;
 use covact_geometry::{PatchShape, Vec3};
 pub use frame::{DOFS, NODES};
@@ -97,6 +99,8 @@ pub struct NurbsBlock {
     starts: Vec<u32>,
     /// Where patches are joined.
     seams: Vec<SeamSpan>,
+    /// Where curves of trims are held.
+    anchors: Vec<AnchorSpring>,
 }
 
 /// Points that strains are worked out at together: all of an element, or those in a part of one that a trim cuts, whose membrane
@@ -141,6 +145,7 @@ impl NurbsBlock {
             borders: Vec::new(),
             starts: Vec::new(),
             seams: SeamSpan::all(sheet, &law)?,
+            anchors: Vec::new(),
         };
         let places: Vec<(f64, f64)> = (rule.iter())
             .map(|(s, w)| (0.5 * (1.0 + s), 0.5 * w))
@@ -269,7 +274,8 @@ impl NurbsBlock {
         let seams = groups
             + size_of_val(&self.seams[..])
             + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
-        size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams
+        let anchors = size_of_val(&self.anchors[..]);
+        size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams + anchors
     }
 
     /// Gauss points of a group.

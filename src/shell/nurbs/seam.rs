@@ -1,7 +1,7 @@
 //! Seams: where two patches of a sheet are joined. Their control points stay their own; an energy per undeformed length holds
 //! displacements together and the angle between both sides,
 //! `alpha_d/2 |u_A - u_B|^2 + alpha_r (1 - m . n_B)` with `m = c0 n_A + s0 nu_A + t0 tau_A`,
-//! where `tau` is the unit tangent of the edge on side A, `nu_A = tau x n_A`, and the constants `c0 = N_A . N_B`,
+//! where `tau` is the unit tangent of the seam on side A, `nu_A = tau x n_A`, and the constants `c0 = N_A . N_B`,
 //! `s0 = Nu_A . N_B` and `t0 = Tau_A . N_B` are those of the undeformed shell, the last no more than a gap makes of it. `1 - m . n_B` is twice the square of the sine of half the change of the
 //! angle, whatever the angle is: flat seams, folds and normals that are turned over are one expression. Displacements, not
 //! positions, are compared, so that a gap within the tolerance of a CAD file strains nothing.
@@ -15,9 +15,8 @@ use super::frame::{NODES, Normal, combine, cross};
 use super::point::{Shapes, shapes};
 use super::{Law, ShellError};
 use crate::fem::gauss;
-use crate::mesh::nurbs::seams::Curve;
-use crate::mesh::nurbs::{DEGREE, Seam};
-use crate::mesh::{Edge, NurbsSheet};
+use crate::mesh::NurbsSheet;
+use crate::mesh::nurbs::{Border, DEGREE, Seam, width_across};
 use covact_geometry::{PatchShape, Vec3};
 use num_dual::DualNum;
 
@@ -51,8 +50,8 @@ struct SeamPoint {
     /// Shape functions of both sides.
     n: [[f64; NODES]; 2],
     n_i: [[[f64; NODES]; 2]; 2],
-    /// The parameter of side A that runs along the seam.
-    along: usize,
+    /// Derivatives of those of side A along the seam.
+    n_t: [f64; NODES],
     /// `c0, s0, t0`.
     angle: [f64; 3],
     /// `alpha_d` and `alpha_r` times the undeformed length.
@@ -66,25 +65,19 @@ struct Place {
     frame: Normal<f64>,
     /// Width of the element across the edge (length).
     width: f64,
+    /// Derivative of the parameters along it.
+    direction: [f64; 2],
 }
 
-fn place(sheet: &NurbsSheet, edge: Edge, s: f64, room: &mut PatchShape) -> Place {
-    let part = &sheet.patches[edge.patch()];
-    let (across, along) = (edge.direction(), 1 - edge.direction());
-    let bases = [0, 1].map(|dir| part.patch.basis(dir));
-    let end = match edge.at_end() {
-        false => 0,
-        true => bases[across].span_count() - 1,
-    };
-    let mut span = [end; 2];
-    let count = bases[along].span_count();
-    span[along] = (0..count)
-        .find(|k| s < bases[along].span_range(*k)[1])
-        .unwrap_or(count - 1);
-    let border = bases[across].span_range(end);
-    let mut xi = [border[usize::from(edge.at_end())]; 2];
-    xi[along] = s;
-    let mut shapes = shapes(&part.patch, span, xi, room);
+fn place(sheet: &NurbsSheet, border: Border, s: f64, room: &mut PatchShape) -> Place {
+    let part = &sheet.patches[border.patch()];
+    let line = part.line(border);
+    let span = line.span(s);
+    let sides = [0, 1].map(|dir| {
+        let [a, b] = part.patch.basis(dir).span_range(span[dir]);
+        b - a
+    });
+    let mut shapes = shapes(&part.patch, span, line.xi(s), room);
     let positions = part.patch.homogeneous();
     let x = shapes.nodes.map(|n| {
         let [x, y, z, w] = positions[n as usize];
@@ -97,9 +90,11 @@ fn place(sheet: &NurbsSheet, edge: Edge, s: f64, room: &mut PatchShape) -> Place
     for node in &mut shapes.nodes {
         *node += part.first_node;
     }
+    let width = width_across(border, frame.r.map(Vec3::from), line.outward(s), sides);
     Place {
-        element: part.first_element as usize + span[0] + bases[0].span_count() * span[1],
-        width: dot(&frame.r[across], &frame.r[across]).sqrt() * (border[1] - border[0]),
+        element: part.first_element as usize + span[0] + part.patch.basis(0).span_count() * span[1],
+        width,
+        direction: line.direction(s),
         shapes,
         frame,
     }
@@ -126,16 +121,8 @@ impl SeamSpan {
         positions: &[V<f64>],
         out: &mut Vec<SeamSpan>,
     ) -> Result<(), ShellError> {
-        let curves = seam
-            .edges
-            .map(|e| Curve::new(&sheet.patches[e.patch()].patch, e));
-        let spans = [0, 1].map(|k| {
-            let edge = seam.edges[k];
-            let all = sheet.patches[edge.patch()]
-                .patch
-                .spans(1 - edge.direction());
-            within(&all, seam.ranges[k])
-        });
+        let curves = seam.edges.map(|border| sheet.curve(border));
+        let spans = [0, 1].map(|k| curves[k].line.pieces(seam.ranges[k]));
         // Points are taken on the side with fewer spans.
         let a = usize::from(spans[1].len() < spans[0].len());
         let b = 1 - a;
@@ -146,7 +133,7 @@ impl SeamSpan {
         for [from, to] in &spans[a] {
             let feet = [*from, *to].map(|s| curves[b].foot(&curves[a].point(s)).0);
             let other = [feet[0].min(feet[1]), feet[0].max(feet[1])];
-            let count = within(&spans[b], other).len().max(DEGREE - 1);
+            let count = curves[b].line.pieces(other).len().max(DEGREE - 1);
             let parts = count.div_ceil(RULE);
             let rule = gauss(count.div_ceil(parts)).expect("rules have up to eight points");
             for part in 0..parts {
@@ -159,9 +146,7 @@ impl SeamSpan {
                         place(sheet, seam.edges[a], s, &mut room),
                         place(sheet, seam.edges[b], curves[b].foot(&x).0, &mut room),
                     ];
-                    let along = 1 - seam.edges[a].direction();
-                    let Some(mut point) =
-                        SeamPoint::new(&places, along, 0.5 * w * size, stretch, bending)
+                    let Some(mut point) = SeamPoint::new(&places, 0.5 * w * size, stretch, bending)
                     else {
                         let element = places[0].element as u32;
                         return Err(ShellError::NoNormal { element });
@@ -274,25 +259,12 @@ impl SeamSpan {
     }
 }
 
-/// The parts of some spans that lie in a range, without slivers that are round-off.
-fn within(spans: &[[f64; 2]], [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
-    let least = 1e-6 * (high - low);
-    (spans.iter())
-        .map(|[a, b]| [a.max(low), b.min(high)])
-        .filter(|[a, b]| b - a > least.min(1e-3 * (high - low)))
-        .collect()
-}
-
 impl SeamPoint {
-    fn new(
-        [a, b]: &[Place; 2],
-        along: usize,
-        weight: f64,
-        stretch: f64,
-        bending: f64,
-    ) -> Option<SeamPoint> {
-        let t = &a.frame.r[along];
-        let length = dot(t, t).sqrt();
+    fn new([a, b]: &[Place; 2], weight: f64, stretch: f64, bending: f64) -> Option<SeamPoint> {
+        let [d1, d2] = a.direction;
+        let [r1, r2] = &a.frame.r;
+        let t: V<f64> = [0, 1, 2].map(|c| r1[c] * d1 + r2[c] * d2);
+        let length = dot(&t, &t).sqrt();
         let tau = t.map(|t| t / length);
         // Two normals of one edge are both across it.
         let slant = dot(&tau, &b.frame.n);
@@ -302,7 +274,7 @@ impl SeamPoint {
         sound.then(|| SeamPoint {
             n: [a.shapes.n, b.shapes.n],
             n_i: [a, b].map(|p| [p.shapes.second[0], p.shapes.second[1]]),
-            along,
+            n_t: std::array::from_fn(|k| a.shapes.second[0][k] * d1 + a.shapes.second[1][k] * d2),
             // Set by what is compared with it.
             angle: [0.0; 3],
             stiffness,
@@ -334,7 +306,7 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
         let frames = [0, 1].map(|s: usize| {
             Normal::new([combine(&p.n_i[s][0], &x[s]), combine(&p.n_i[s][1], &x[s])])
         });
-        let t = frames[0].r[p.along];
+        let t = combine(&p.n_t, &x[0]);
         let length = dot(&t, &t).sqrt();
         let tau = t.map(|t| t / length);
         let nu = cross(&tau, &frames[0].n);
@@ -376,7 +348,7 @@ impl<D: DualNum<f64> + Copy> Joint<D> {
         }
         let [c0, s0, t0] = p.angle;
         // dtau = T (nu x nu + n x n) dx
-        let along = self.length.recip() * p.n_i[0][p.along][a];
+        let along = self.length.recip() * p.n_t[a];
         let turned = (off_nu * t0 - off_tau * s0) * along;
         let lifted = -(off_nu * psi + off_tau * theta) * c0 + off_n * psi * s0 + off_n * along * t0;
         [0, 1, 2].map(|c| self.nu[c] * turned + n[c] * lifted)
@@ -401,7 +373,7 @@ impl Joint<f64> {
         );
         let beta: [[Vec3; NODES]; 2] =
             [0, 1].map(|side| std::array::from_fn(|a| Vec3::from(self.beta(p, side, a))));
-        let t: [f64; NODES] = std::array::from_fn(|a| p.n_i[0][p.along][a] / self.length);
+        let t: [f64; NODES] = std::array::from_fn(|a| p.n_t[a] / self.length);
         let psi = beta[0].map(|b| nu.dot(&b));
         let theta = beta[0].map(|b| tau.dot(&b));
         let phi = beta[0].map(|b| nb.dot(&b));

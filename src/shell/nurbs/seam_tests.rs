@@ -1,8 +1,8 @@
 //! Seams: derivatives against dual numbers, rigid motions, balance, and patches whose knots do not match.
 use super::seam::{SEAM_DOFS, SEAM_NODES};
 use super::*;
-use crate::mesh::Edge;
 use crate::mesh::nurbs::{Fineness, Joints};
+use crate::mesh::{Border, Edge};
 use crate::scene::{Elastic, Material};
 use covact_geometry::NurbsPatch;
 use nalgebra::{DMatrix, Rotation3, SymmetricEigen};
@@ -262,7 +262,10 @@ fn patch_test_over_a_seam_that_does_not_match() {
         assert!(energy < 1e-20, "{energy}");
     }
     // The forces that both sides exert along the seam are the traction that goes through it: they cancel.
-    let across = |edge: Edge| -> Vec3 {
+    let across = |border: Border| -> Vec3 {
+        let Border::Edge(edge) = border else {
+            panic!("{border:?} is no edge");
+        };
         let row = sheet.row(edge, 0);
         row.iter().map(|n| inner[*n as usize]).sum()
     };
@@ -293,11 +296,11 @@ fn seams_are_found_by_their_shape() {
     let joints = find(&[a.clone(), b.clone(), long]);
     assert_eq!(joints.seams.len(), 3);
     assert_eq!(joints.inner.len(), 4, "{:?}", joints.inner);
-    assert_eq!(joints.partial, vec![Edge::of(2)[2]]);
+    assert_eq!(joints.partial, vec![Border::Edge(Edge::of(2)[2])]);
     let seam = joints
         .seams
         .iter()
-        .find(|s| s.edges == [Edge::of(1)[3], Edge::of(2)[2]]);
+        .find(|s| s.edges == [Edge::of(1)[3], Edge::of(2)[2]].map(Border::Edge));
     let seam = seam.expect("the second lies on the long one");
     assert!((seam.ranges[1][0] - 0.4).abs() < 1e-12 && (seam.ranges[1][1] - 0.8).abs() < 1e-12);
     // A web below the seam of both.
@@ -320,7 +323,7 @@ fn seams_are_found_by_their_shape() {
     let joints = find(&[a.clone(), rib]);
     assert_eq!(
         (joints.seams.len(), joints.inside),
-        (0, vec![(Edge::of(1)[0], 0)])
+        (0, vec![(Border::Edge(Edge::of(1)[0]), 0)])
     );
     // Turned over.
     let joints = find(&[a.clone(), b.reversed(0).unwrap()]);

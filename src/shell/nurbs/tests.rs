@@ -2,7 +2,7 @@
 use super::plane_stress::{Place, PlaneStress, Sheet};
 use super::*;
 use crate::mesh::nurbs::Fineness;
-use crate::mesh::{Edge, Mesh};
+use crate::mesh::{Border, Edge, Mesh};
 use crate::scene::{Elastic, Material};
 use crate::shell::material::{MaterialLaw, Metric};
 use covact_geometry::basis::Basis;
@@ -70,12 +70,18 @@ fn disc(assumed: bool) -> NurbsSheet {
 
 fn held(block: &mut NurbsBlock) {
     let plane = Vec3::new(0.6, 0.0, 0.8);
+    // Curves of the trim, where it leaves nothing of the edges.
+    let borders = match block.sheet.free_borders()[..] {
+        [first, second] => [first, second],
+        _ => [Edge::ALL[0], Edge::ALL[3]].map(Border::Edge),
+    };
     let both = [
-        (Edge::ALL[0], HeldNormal::Clamped),
-        (Edge::ALL[3], HeldNormal::InPlane(plane)),
+        (borders[0], HeldNormal::Clamped),
+        (borders[1], HeldNormal::InPlane(plane)),
     ];
     block.hold(&both).unwrap();
-    assert_eq!(block.borders.len(), 16);
+    let points = if block.sheet.is_trimmed() { 12 } else { 16 };
+    assert_eq!(block.borders.len(), points);
 }
 
 /// Displacements without a pattern of an element's control points.

@@ -81,6 +81,7 @@ histories!(
     draw_bead,
     drop,
     flanged_panel,
+    folded_panel,
     gravity_drape,
     hat_pressed,
     hertz_block,

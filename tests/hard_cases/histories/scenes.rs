@@ -119,6 +119,12 @@ pub fn sheet_over_hills(scene: &mut Value) {
     end(scene, 1.6);
 }
 
+/// Coarser, and pressed a little.
+pub fn folded_panel(scene: &mut Value) {
+    set(scene, "/bodies/panel/nurbs/size", 6);
+    end(scene, 0.4);
+}
+
 /// Coarser, and until the upper tube slides.
 pub fn tubes_crossed_nurbs(scene: &mut Value) {
     for body in ["lower", "upper"] {

@@ -11,6 +11,9 @@ mod panel;
 mod refusals;
 mod scenes;
 mod seams;
+mod trim_masters;
+mod trim_seams;
+mod trim_supports;
 mod trims;
 
 use crate::support::{Outcome, solve_in};

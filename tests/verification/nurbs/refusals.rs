@@ -122,11 +122,9 @@ fn faces_that_cannot_be_sheets() {
     trimmed["patches"][1]["points"] =
         json!([[1, 0, 0, 1], [2, 0, 0, 1], [1, 1, 0, 1], [2, 1, 0, 1]]);
     trimmed["patches"][1]["trim"] = json!([[side(0, 1), side(1, 2), side(2, 0)]]);
-    only(
-        &scene,
-        &trimmed,
-        &["face 2: the face is trimmed", "several faces"],
-    );
+    let mut beside = scene.clone();
+    beside["supports"]["all"]["on"] = json!(["sheet.1.edge.1", "sheet.1.edge.3", "sheet.2.trim.1"]);
+    assert_eq!(problems(&beside, &trimmed), Vec::<String>::new());
     trimmed["patches"]
         .as_array_mut()
         .expect("patches")
@@ -165,25 +163,47 @@ fn what_trimmed_sheets_cannot_do() {
     let mut scene = scene_of(sheet(0.1, [4, 4]));
     scene["supports"]["all"] = json!({"on": "sheet.edge.3", "clamped": true});
     assert_eq!(problems(&scene, &half), Vec::<String>::new());
+    // What is left of an edge and the curve bear loads, and the curve is held; the face is a master.
     for (key, load) in [("couple", json!(1)), ("force", json!([0, 0, 1]))] {
-        let mut loaded = scene.clone();
-        loaded["loads"] = json!({"load": {"on": "sheet.edge.1", key: load}});
-        only(
-            &loaded,
-            &half,
-            &[
-                "/loads/load/on",
-                "a trim cuts a part of `sheet.edge.1` away",
-            ],
-        );
+        for on in ["sheet.edge.1", "sheet.trim.1", "sheet.trim.1.2"] {
+            let mut loaded = scene.clone();
+            loaded["loads"] = json!({"load": {"on": on, key: load}});
+            assert_eq!(problems(&loaded, &half), Vec::<String>::new());
+        }
     }
-    scene["contacts"] = json!({"c": {"slave": "block.top", "master": "sheet.bottom"}});
+    let mut held = scene.clone();
+    held["supports"]["all"]["on"] = json!("sheet.trim.1.2");
+    assert_eq!(problems(&held, &half), Vec::<String>::new());
+    held["supports"]["all"]["on"] = json!("sheet.trim.1.1");
     only(
-        &scene,
+        &held,
         &half,
+        &["/supports/all/on", "no node set `trim.1.1`"],
+    );
+    scene["contacts"] = json!({"c": {"slave": "block.top", "master": "sheet.bottom"}});
+    assert_eq!(problems(&scene, &half), Vec::<String>::new());
+    // Folded along the curve.
+    let mut folded = half.clone();
+    let mut second = plate()["patches"][0].clone();
+    second["entity"] = json!(2);
+    second["points"] = json!([
+        [0.9, 0, 0, 1],
+        [0, 0.9, 0, 1],
+        [0.9, 0, 0.5, 1],
+        [0, 0.9, 0.5, 1]
+    ]);
+    folded["patches"]
+        .as_array_mut()
+        .expect("patches")
+        .push(second);
+    let mut master = scene.clone();
+    master["supports"]["all"]["on"] = json!("sheet.1.edge.3");
+    only(
+        &master,
+        &folded,
         &[
             "/contacts/c/master",
-            "`sheet.bottom` is a face that is trimmed",
+            "is folded along a curve of a trim between faces 1 and 2",
         ],
     );
     let mut nothing = half.clone();

@@ -5,23 +5,23 @@ use serde_json::{Value, json};
 use std::f64::consts::PI;
 
 /// A curve in the plane of parameters: homogeneous points (w x, w y, w) on clamped knots of one span.
-fn curve(points: &[[f64; 3]]) -> Value {
+pub fn curve(points: &[[f64; 3]]) -> Value {
     let degree = points.len() - 1;
     json!({"degree": degree, "knots": knots(degree), "domain": [0.0, 1.0], "points": points})
 }
 
-fn line(a: [f64; 2], b: [f64; 2]) -> Value {
+pub fn line(a: [f64; 2], b: [f64; 2]) -> Value {
     curve(&[[a[0], a[1], 1.0], [b[0], b[1], 1.0]])
 }
 
 /// The border of the whole domain.
-fn border() -> Value {
+pub fn border() -> Value {
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     Value::from_iter((0..4).map(|k| line(corners[k], corners[(k + 1) % 4])))
 }
 
 /// A circle about the middle, of four quarters.
-fn circle(radius: f64) -> Value {
+pub fn circle(radius: f64) -> Value {
     Value::from_iter((0..4).map(|k| {
         let [a, b] = [k, k + 1].map(|k| 0.5 * PI * f64::from(k));
         let points = arc(a, b).map(|[x, y, w]| {
@@ -33,7 +33,7 @@ fn circle(radius: f64) -> Value {
     }))
 }
 
-fn face(entity: u32, degree: [usize; 2], points: &[[f64; 4]], trim: Value) -> Value {
+pub fn face(entity: u32, degree: [usize; 2], points: &[[f64; 4]], trim: Value) -> Value {
     let knots = degree.map(knots);
     let mut out = json!({"entity": entity, "degree": degree, "knots": knots, "points": points});
     if !trim.is_null() {
@@ -42,12 +42,12 @@ fn face(entity: u32, degree: [usize; 2], points: &[[f64; 4]], trim: Value) -> Va
     out
 }
 
-fn file(faces: Vec<Value>) -> Value {
+pub fn file(faces: Vec<Value>) -> Value {
     json!({"covact_geometry": 1, "unit": "mm", "resolution": null, "patches": faces})
 }
 
 /// A square plate of side 4 about the origin, with a hole of this radius (or none) cut out.
-fn square(radius: f64) -> Value {
+pub fn square(radius: f64) -> Value {
     let points = [[-2.0, -2.0], [2.0, -2.0], [-2.0, 2.0], [2.0, 2.0]];
     let points = points.map(|[x, y]| [x, y, 0.0, 1.0]);
     let trim = json!([border(), circle(radius / 4.0)]);
@@ -55,7 +55,7 @@ fn square(radius: f64) -> Value {
 }
 
 /// The same plate of four faces between the hole and a side each, without a trim: xi1 runs round, xi2 outwards.
-fn four_faces(radius: f64) -> Value {
+pub fn four_faces(radius: f64) -> Value {
     let faces = (0..4).map(|k| {
         let middle = 0.5 * PI * f64::from(k);
         let inner = arc(middle - 0.25 * PI, middle + 0.25 * PI);
