@@ -280,6 +280,11 @@ impl Compliance {
         }) && errors.sum() <= penalty_rule::raises_from(model)
     }
 
+    /// What rigid contact would have changed at the last step at which it was measured.
+    pub fn last_error(&self) -> f64 {
+        self.limits[1].error
+    }
+
     /// Whether a force is as large as any before.
     pub fn is_largest(&self, limit: Option<&RigidLimit>) -> bool {
         limit.is_some_and(|limit| limit.force() >= self.force)

@@ -206,6 +206,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             touched |= totals.active > 0;
             match norms.judge(tolerance, settled) {
                 Verdict::Converged => {
+                    self.stays(&trial.u, iteration)?;
                     // An iterate that overshoots may lose all contact, and find what is beyond a snap.
                     let unstable =
                         |f: &Factorization| f.method != Method::Lu && f.negative_pivots > 0;
@@ -220,6 +221,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         iterations: iteration,
                         augmentations: 0,
                         augmenting: 0,
+                        releasing: 0,
                         totals,
                         force: own.force,
                         history,

@@ -249,3 +249,45 @@ fn a_force_that_rises_at_the_end_is_right_at_the_end() {
     assert!(exact < -5.0 && off < 0.01 && found < 0.01, "{off} {found}");
     assert_eq!(told(&default), Vec::<&String>::new());
 }
+
+/// A strip wrapped on a drum by a pressure that follows it: all forces are in proportion to the pressure. The penalty is raised at the
+/// last step alone, and the run tells by how much that puts the steps before in the wrong.
+#[test]
+fn steps_before_a_raise_at_the_last_one_are_told() {
+    let mut scene = json!({
+        "covact": 1,
+        "materials": { "s": { "st_venant_kirchhoff": { "E": 2000, "nu": 0.35 } } },
+        "bodies": { "s": {
+            "mesh": { "plate": { "size": [40, 4], "thickness": 0.6, "elements": [80, 1], "origin": [0, 0, 20.3] } },
+            "material": "s"
+        } },
+        "surfaces": { "drum": {
+            "cylinder": { "radius": 20, "length": 20, "center": [0, 2, 0], "axis": [0, 1, 0] }, "side": "outward"
+        } },
+        "contacts": { "c": { "slave": "s.bottom", "master": "drum", "friction": 0.15 } },
+        "supports": {
+            "root": { "on": "s.x_min", "fixed": true },
+            "y": { "on": ["s.y_min", "s.y_max"], "symmetry": "y" }
+        },
+        "loads": { "p": { "on": "s.top", "pressure": "0.08*t", "follower": true } },
+        "output": { "every": 0 }
+    });
+    let before = |outcome: &Outcome| {
+        let [times, forces] = ["time", "force.drum.x"].map(|name| outcome.column(name));
+        let last = times.len() - 2;
+        forces[last] / times[last]
+    };
+    let ruled = run(&scene);
+    let penalty = ruled.summary.accuracy.contacts[0].penalty;
+    let told = |outcome: &Outcome| {
+        let all = outcome.summary.warnings.iter();
+        all.filter(|w| w.contains("before the last one are off"))
+            .count()
+    };
+    scene["contacts"]["c"]["penalty"] = json!({ "value": penalty });
+    let given = run(&scene);
+    let off = (before(&ruled) / before(&given) - 1.0).abs();
+    println!("{off} {:?}", ruled.summary.warnings);
+    assert!(off > 0.05, "{off}");
+    assert_eq!((told(&ruled), told(&given)), (1, 0));
+}

@@ -28,6 +28,7 @@ impl March<'_, '_> {
             return Ok(());
         }
         let held = trial.clone();
+        let taken = converged.iterations;
         let scale = |march: &mut Self, factor: f64| {
             let viscous = march.assembler.effects.viscous.iter_mut();
             viscous.for_each(|v| v.scale(factor));
@@ -49,6 +50,7 @@ impl March<'_, '_> {
                 converged.stiffened(again?);
             }
         }
+        converged.releasing = converged.iterations - taken;
         Ok(())
     }
 }

@@ -290,14 +290,16 @@ impl<'m> March<'_, 'm> {
         let Some((index, soft, stiff)) = changed else {
             return;
         };
-        if (stiff - soft).abs() <= AT_LAST * largest {
+        // A path that stiffens at its end, where the steps before were right, is raised there as well.
+        let error = self.compliance.last_error();
+        if (stiff - soft).abs() <= AT_LAST * largest || error <= AT_LAST {
             return;
         }
         self.warn(format!(
             "contact `{}`: forces of the steps before the last one are off by up to about {:.0} %: its penalty was raised at the last \
              step, which changed its force there from {} to {}; a `penalty` of about {} from the start shows what came before",
             self.model.pairs[index].name,
-            100.0 * (stiff - soft).abs() / largest,
+            100.0 * error.min(1.0),
             number(soft),
             number(stiff),
             number(self.assembler.penalties[index])
@@ -417,7 +419,7 @@ impl<'m> March<'_, 'm> {
             return;
         }
         let model: &Model = self.model;
-        let iterations = converged.iterations + self.failed;
+        let iterations = converged.iterations - converged.releasing + self.failed;
         let mut penalties = self.assembler.penalties.clone();
         let last = errors.clone();
         self.rule.lower(model, &all, iterations, &mut penalties);

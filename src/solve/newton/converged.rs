@@ -1,4 +1,5 @@
 //! What Newton's method took to an equilibrium.
+use super::{LinearSolver, Newton, StepFailure, WILD};
 use crate::assembly::Totals;
 use crate::system::linear::Factorization;
 
@@ -11,6 +12,8 @@ pub struct Converged {
     pub augmentations: u32,
     /// Iterations that the augmentations took.
     pub augmenting: u32,
+    /// Iterations of the same step with the stabilisation released.
+    pub releasing: u32,
     /// Sums of forces and contact at the equilibrium.
     pub totals: Totals,
     /// Norm of the forces at the equilibrium.
@@ -44,5 +47,20 @@ impl Converged {
     pub fn stiffened(&mut self, next: Converged) {
         self.augmented(next);
         self.augmentations -= 1;
+    }
+}
+
+impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
+    /// Whether neighbouring nodes are where anything can be. Beside displacements without bounds rounding is as large as all forces:
+    /// what holds a node by next to nothing lets it go anywhere, and nothing is left of the residual by that measure.
+    ///
+    /// # Errors
+    /// Where they are not.
+    pub(super) fn stays(&self, u: &[f64], iteration: u32) -> Result<(), StepFailure> {
+        let stretch = self.model.largest_stretch(u);
+        match stretch > WILD && stretch.is_finite() {
+            true => Err(StepFailure::Diverges { iteration, stretch }),
+            false => Ok(()),
+        }
     }
 }
