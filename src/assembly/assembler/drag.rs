@@ -8,8 +8,8 @@ pub struct Drag {
     /// Energy that its forces took.
     pub work: f64,
     /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest. Where
-    /// it stands for contact, as the run brings it in, those of supports do not count as long as others act: a bending moment is
-    /// held by pairs of forces that are large beside what bends.
+    /// it stands for contact beside metal that flows, which answers to a little force by a lot, those of supports do not count as
+    /// long as others act: a bending moment is held by pairs of forces that are large beside what bends.
     pub share: f64,
 }
 
@@ -62,11 +62,12 @@ impl<L: PairLaw> Assembler<'_, L> {
             (0..3).for_each(|i| forces[i] += node[i].sqrt());
         }
         let [loads, contacts, supports] = forces;
-        let stands_for_contact = self
-            .model
-            .stabilization
-            .as_ref()
-            .is_some_and(|s| s.released)
+        let stands_for_contact = self.model.flows()
+            && self
+                .model
+                .stabilization
+                .as_ref()
+                .is_some_and(|s| s.released)
             && !passing.acts();
         let largest = match loads.max(contacts) {
             most if most > 0.0 && stands_for_contact => most,

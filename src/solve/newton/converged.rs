@@ -1,7 +1,11 @@
 //! What Newton's method took to an equilibrium.
-use super::{LinearSolver, Newton, StepFailure, WILD};
+use super::{LinearSolver, Newton, StepFailure};
 use crate::assembly::Totals;
 use crate::system::linear::Factorization;
+
+/// Multiple of their distance that neighbouring nodes may be apart at an equilibrium. A control point of which a trim leaves next to
+/// nothing may well be a thousand away.
+const NOWHERE: f64 = 1e6;
 
 /// What a converged step took.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +62,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     /// Where they are not.
     pub(super) fn stays(&self, u: &[f64], iteration: u32) -> Result<(), StepFailure> {
         let stretch = self.model.largest_stretch(u);
-        match stretch > WILD && stretch.is_finite() {
+        match stretch > NOWHERE && stretch.is_finite() {
             true => Err(StepFailure::Diverges { iteration, stretch }),
             false => Ok(()),
         }
