@@ -333,8 +333,6 @@ impl Compliance {
             false => [[0.0; 2]; 2],
         };
         self.path = [[stored, end.work], before];
-        let raises = end.penalties.iter().zip(&self.penalties);
-        let stiffened = raises.fold(1.0f64, |most, (now, before)| most.max(now / before));
         self.penalties.clear();
         self.penalties.extend_from_slice(end.penalties);
         if stored <= 0.0 || !self.judges(end) {
@@ -383,7 +381,7 @@ impl Compliance {
         }
         *last = here;
         let bound = penalty_rule::raises_from(model);
-        match self.lasting.step(here.error, stiffened, bound) {
+        match self.lasting.step(here.error, bound) {
             true => Ok(measures.growth.max(self.lasting.now)),
             false => Ok(measures.growth),
         }

@@ -1,9 +1,6 @@
-//! The error to rigid contact that lasts from step to step, and what raises of the penalty did about it.
+//! The error to rigid contact that lasts from step to step.
 use super::HELPED;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
-
-/// Factor of a raise from which on it should have shown in the error.
-const SHOWS: f64 = 2.0;
 
 /// What steps in a row showed. A single one may be that of a point just about to slide.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,8 +10,6 @@ pub(super) struct Lasting {
     pub now: f64,
     /// The error when it last raised a penalty, while it is too large; else infinite.
     raised: f64,
-    /// A raise did not help.
-    vain: bool,
 }
 
 impl Lasting {
@@ -22,21 +17,21 @@ impl Lasting {
         before: 0.0,
         now: 0.0,
         raised: f64::INFINITY,
-        vain: false,
     };
 
-    /// Takes the error of a step, before which penalties had been raised by the factor `stiffened`; whether the penalty is to be
-    /// raised for what lasts, above `bound`.
-    pub fn step(&mut self, error: f64, stiffened: f64, bound: f64) -> bool {
+    /// Takes the error of a step; whether the penalty is to be raised for what lasts, above `bound`.
+    pub fn step(&mut self, error: f64, bound: f64) -> bool {
         self.now = error.min(std::mem::replace(&mut self.before, error));
         if self.now <= bound {
-            (self.raised, self.vain) = (f64::INFINITY, false);
+            self.raised = f64::INFINITY;
             return false;
         }
-        // What a stiffer penalty did not lower, another will not; one that is hardly stiffer has not been tried.
-        self.vain |= stiffened >= SHOWS && error > HELPED * self.raised;
+        // What a stiffer penalty did not lower, another will not.
+        if error > HELPED * self.raised {
+            return false;
+        }
         self.raised = error;
-        !self.vain
+        true
     }
 
     pub fn put(&self, out: &mut Writer) {
@@ -44,10 +39,8 @@ impl Lasting {
             before,
             now,
             raised,
-            vain,
         } = self;
         out.f64s(&[*before, *now, *raised]);
-        out.bool(*vain);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -58,7 +51,6 @@ impl Lasting {
             before,
             now,
             raised,
-            vain: from.bool()?,
         })
     }
 }
@@ -70,17 +62,13 @@ mod tests {
     #[test]
     fn what_a_raise_does_not_lower_is_left_alone() {
         let mut own = Lasting::NONE;
-        assert!(!own.step(0.1, 1.0, 0.01), "a single step");
-        assert!(own.step(0.1, 1.0, 0.01));
-        // One by little has not been tried, nor one that was taken back.
-        assert!(own.step(0.12, 1.3, 0.01));
-        assert!(own.step(0.13, 1.0, 0.01));
-        assert!(own.step(0.07, 10.0, 0.01), "it helped");
-        assert!(!own.step(0.07, 10.0, 0.01), "it did not");
-        assert!(!own.step(0.15, 1.0, 0.01));
+        assert!(!own.step(0.1, 0.01), "a single step");
+        assert!(own.step(0.1, 0.01));
+        assert!(!own.step(0.1, 0.01), "it did not help");
+        assert!(own.step(0.07, 0.01), "it did");
         // Until the error has been small.
-        assert!(!own.step(0.005, 10.0, 0.01));
-        assert!(!own.step(0.1, 1.0, 0.01));
-        assert!(own.step(0.1, 1.0, 0.01));
+        assert!(!own.step(0.005, 0.01));
+        assert!(!own.step(0.1, 0.01));
+        assert!(own.step(0.1, 0.01));
     }
 }
