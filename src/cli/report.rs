@@ -11,8 +11,12 @@ use std::panic::PanicHookInfo;
 /// Problems beyond this many are counted, not shown.
 const SHOWN: usize = 20;
 
-/// Lines of more bytes than this are not shown: a caret under their end would be nowhere on the screen.
-const LONGEST_LINE: usize = 4000;
+/// Of lines of more characters than this, as other programs write them, only what is around the problem is shown: a caret under their
+/// end would be nowhere on the screen.
+const LONGEST_LINE: usize = 200;
+
+/// Characters that are shown of them before the problem, and from there on.
+const AROUND: [usize; 2] = [30, 44];
 
 /// Lines of a value that are shown.
 const MOST_LINES: usize = 6;
@@ -79,9 +83,8 @@ impl miette::Diagnostic for Shown<'_> {
 
 /// The lines around a problem, with a caret.
 fn snippet(problem: &Problem, text: &str) -> String {
-    let line = text.lines().nth(problem.place.line.saturating_sub(1));
-    if line.is_some_and(|line| line.len() > LONGEST_LINE) {
-        return String::new();
+    if let Some(part) = part_of_line(problem, text) {
+        return part;
     }
     let theme = match colours() {
         true => GraphicalTheme::unicode(),
@@ -104,6 +107,33 @@ fn snippet(problem: &Problem, text: &str) -> String {
         .skip_while(|l| !l.contains('╭'))
         .filter(|l| !l.trim().is_empty());
     lines.map(|l| format!("{l}\n")).collect()
+}
+
+/// What is around a problem in a line that is too long to be shown; none where it is not.
+fn part_of_line(problem: &Problem, text: &str) -> Option<String> {
+    let (before, rest) = text.split_at_checked(problem.span.start)?;
+    let before = &before[before.rfind('\n').map_or(0, |end| end + 1)..];
+    let rest = rest.lines().next().unwrap_or_default();
+    let [left, right] = [before, rest].map(|part| part.chars().count());
+    if left + right <= LONGEST_LINE {
+        return None;
+    }
+    let dots = |cut: bool| if cut { "..." } else { "" };
+    let [most, more] = AROUND;
+    let head: String = before.chars().skip(left.saturating_sub(most)).collect();
+    let tail: String = rest.chars().take(more).collect();
+    let value = text.get(problem.span.start..problem.span.end);
+    let marked = value
+        .map_or(1, |v| v.chars().count())
+        .clamp(1, tail.chars().count().max(1));
+    let number = problem.place.line.to_string();
+    let (margin, cut) = (" ".repeat(number.len()), dots(left > most));
+    let indent = " ".repeat(cut.len() + head.chars().count());
+    Some(format!(
+        " {margin} ╭────\n {number} │ {cut}{head}{tail}{}\n {margin} · {indent}{}\n {margin} ╰────\n",
+        dots(right > more),
+        "─".repeat(marked)
+    ))
 }
 
 fn problems(name: &str, text: &str, problems: &[Problem]) {

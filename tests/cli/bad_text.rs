@@ -322,3 +322,26 @@ fn a_long_value_is_shown_in_part() {
     let shown = text.lines().filter(|line| line.contains(" │ ")).count();
     assert!((6..=9).contains(&shown), "{shown} lines of\n{text}");
 }
+
+/// A scene in one line, as programs write them: what is around the mistake is shown, within the width of a terminal.
+#[test]
+fn a_long_line_is_shown_in_part() {
+    let scene: serde_json::Value = serde_json::from_str(&starter()).expect("JSON");
+    let line = scene.to_string();
+    assert!(line.len() > 400);
+    let text = refused(line.replacen("\"thickness\"", "\"thicknes\"", 1).as_bytes());
+    assert_parts(&text, &["unknown key `thicknes`", "...", "\"thicknes\":"]);
+    let lines: Vec<&str> = text.lines().collect();
+    let shown = lines
+        .iter()
+        .position(|l| l.starts_with(" 1 │ "))
+        .expect(&text);
+    let under = |line: &str, what: char| line.chars().position(|c| c == what);
+    let mark = under(lines[shown + 1], '─');
+    let key = lines[shown]
+        .find("\"thicknes\"")
+        .map(|at| lines[shown][..at].chars().count());
+    assert_eq!(mark, key, "{text}");
+    let wide = |l: &&str| l.contains(" │ ") && l.chars().count() > 100;
+    assert!(!lines.iter().any(|l| wide(l)), "{text}");
+}

@@ -7,10 +7,11 @@ use crate::contact::law::PairLaw;
 pub struct Drag {
     /// Energy that its forces took.
     pub work: f64,
-    /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest. Where
-    /// it stands for contact beside metal that flows, which answers to a little force by a lot, those of supports do not count as
-    /// long as others act: a bending moment is held by pairs of forces that are large beside what bends.
+    /// Its forces (sum of the magnitudes at nodes) relative to those of loads, supports or contacts, whichever are largest.
     pub share: f64,
+    /// The same without those of supports, as long as others act: a bending moment is held by pairs of forces that are large beside
+    /// what bends.
+    pub beside_loads: f64,
 }
 
 impl<L: PairLaw> Assembler<'_, L> {
@@ -61,22 +62,16 @@ impl<L: PairLaw> Assembler<'_, L> {
             own += drag.sqrt();
             (0..3).for_each(|i| forces[i] += node[i].sqrt());
         }
-        let [loads, contacts, supports] = forces;
-        let stands_for_contact = self.model.flows()
-            && self
-                .model
-                .stabilization
-                .as_ref()
-                .is_some_and(|s| s.released)
-            && !passing.acts();
-        let largest = match loads.max(contacts) {
-            most if most > 0.0 && stands_for_contact => most,
-            most => most.max(supports),
-        };
-        out.share = match own > 0.0 {
-            true => own / largest.max(f64::MIN_POSITIVE),
-            false => 0.0,
-        };
+        if own > 0.0 {
+            let [loads, contacts, supports] = forces;
+            let beside = |most: f64| own / most.max(f64::MIN_POSITIVE);
+            let acting = loads.max(contacts);
+            out.share = beside(acting.max(supports));
+            out.beside_loads = match acting > 0.0 {
+                true => beside(acting),
+                false => out.share,
+            };
+        }
         out
     }
 }

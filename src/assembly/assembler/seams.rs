@@ -63,61 +63,58 @@ impl<L: PairLaw> Assembler<'_, L> {
         for body in &self.model.bodies {
             for seam in body.block.seams() {
                 let nodes = seam.nodes.map(|n| n + body.first_node);
-                let own = nodes.map(|n| Vec3::from_column_slice(&u[3 * n as usize..][..3]));
                 let tangent = TANGENT.then_some(&mut self.seams.tangent[..]);
-                totals.internal_energy += seam.evaluate(&own, &mut f, tangent);
-                for (f, &n) in f.chunks_exact(3).zip(&nodes) {
-                    (0..3).for_each(|c| residual[3 * n as usize + c] += f[c]);
-                }
-                if !TANGENT {
-                    continue;
-                }
-                let count = pairs(SEAM_NODES);
-                let map = &self.seams.maps[at..at + count];
-                at += count;
-                put(
-                    &mut self.matrix,
-                    self.dofs,
-                    &mut self.work,
-                    &nodes,
-                    map,
-                    &mut self.seams.tangent,
-                    increments,
-                    rhs,
-                );
+                totals.internal_energy += seam.evaluate(&displacements(u, &nodes), &mut f, tangent);
+                let room = SEAM_DOFS * SEAM_DOFS;
+                self.couple::<TANGENT>((&nodes, &f), (room, &mut at), increments, residual, rhs);
             }
         }
         let mut f = [0.0; ANCHOR_DOFS];
         for body in &self.model.bodies {
             for spring in body.block.anchors() {
                 let nodes = spring.nodes.map(|n| n + body.first_node);
-                let own = nodes.map(|n| Vec3::from_column_slice(&u[3 * n as usize..][..3]));
-                let room = &mut self.seams.tangent[..];
-                let tangent = match room.get_mut(..ANCHOR_DOFS * ANCHOR_DOFS) {
-                    Some(room) if TANGENT => Some(room),
-                    _ => None,
-                };
-                totals.internal_energy += spring.evaluate(&own, &mut f, tangent);
-                for (f, &n) in f.chunks_exact(3).zip(&nodes) {
-                    (0..3).for_each(|c| residual[3 * n as usize + c] += f[c]);
-                }
-                if !TANGENT {
-                    continue;
-                }
-                let count = pairs(ANCHOR_NODES);
-                let map = &self.seams.maps[at..at + count];
-                at += count;
-                put(
-                    &mut self.matrix,
-                    self.dofs,
-                    &mut self.work,
-                    &nodes,
-                    map,
-                    &mut self.seams.tangent[..ANCHOR_DOFS * ANCHOR_DOFS],
-                    increments,
-                    rhs,
-                );
+                let room = ANCHOR_DOFS * ANCHOR_DOFS;
+                let tangent = TANGENT.then(|| &mut self.seams.tangent[..room]);
+                totals.internal_energy +=
+                    spring.evaluate(&displacements(u, &nodes), &mut f, tangent);
+                self.couple::<TANGENT>((&nodes, &f), (room, &mut at), increments, residual, rhs);
             }
         }
     }
+
+    /// Adds the forces `f` at `nodes` and the tangent of so much room; `at` is its place among all places in the matrix, and goes on
+    /// to the next one.
+    fn couple<const TANGENT: bool>(
+        &mut self,
+        (nodes, f): (&[u32], &[f64]),
+        (room, at): (usize, &mut usize),
+        increments: Option<&[f64]>,
+        residual: &mut [f64],
+        rhs: &mut [f64],
+    ) {
+        for (f, &n) in f.chunks_exact(3).zip(nodes) {
+            (0..3).for_each(|c| residual[3 * n as usize + c] += f[c]);
+        }
+        if !TANGENT {
+            return;
+        }
+        let count = pairs(nodes.len());
+        let map = &self.seams.maps[*at..*at + count];
+        *at += count;
+        put(
+            &mut self.matrix,
+            self.dofs,
+            &mut self.work,
+            nodes,
+            map,
+            &mut self.seams.tangent[..room],
+            increments,
+            rhs,
+        );
+    }
+}
+
+/// Displacements of nodes.
+fn displacements<const N: usize>(u: &[f64], nodes: &[u32; N]) -> [Vec3; N] {
+    nodes.map(|n| Vec3::from_column_slice(&u[3 * n as usize..][..3]))
 }

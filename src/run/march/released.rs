@@ -21,14 +21,18 @@ impl March<'_, '_> {
         let releases = (self.model.stabilization.as_ref()).is_some_and(|s| s.released);
         let carries = || {
             let residual = self.workspace.residual();
-            let share = self.assembler.drag(&trial.u, residual).share;
-            share > RELEASES[0] && share < RELEASES[1]
+            let drag = self.assembler.drag(&trial.u, residual);
+            // Metal that flows answers to a little force by a lot.
+            let carried = match self.model.flows() {
+                true => drag.beside_loads,
+                false => drag.share,
+            };
+            carried > RELEASES[0] && drag.share < RELEASES[1]
         };
         if !releases || !self.assembler.stabilizes() || !carries() {
             return Ok(());
         }
         let held = trial.clone();
-        let taken = converged.iterations;
         let scale = |march: &mut Self, factor: f64| {
             let viscous = march.assembler.effects.viscous.iter_mut();
             viscous.for_each(|v| v.scale(factor));
@@ -50,7 +54,6 @@ impl March<'_, '_> {
                 converged.stiffened(again?);
             }
         }
-        converged.releasing = converged.iterations - taken;
         Ok(())
     }
 }

@@ -198,7 +198,7 @@ impl<'m> March<'_, 'm> {
                 }));
             }
             if !raise {
-                if let Some(first) = first.as_ref().filter(|_| last) {
+                if let Some(first) = &first {
                     self.tell_raised_at_last(first, &converged.totals);
                 }
                 let bearings = &outputs.fields.bearings;
@@ -217,7 +217,9 @@ impl<'m> March<'_, 'm> {
             let softer = std::mem::replace(&mut self.assembler.penalties, stiffer);
             self.hold_given();
             self.tell_raise(step, &softer, error);
-            first.get_or_insert_with(|| (softer.clone(), converged.totals.clone()));
+            if last {
+                first.get_or_insert_with(|| (softer.clone(), converged.totals.clone()));
+            }
             let from = Tried {
                 state: trial.clone(),
                 penalties: softer,
@@ -419,7 +421,7 @@ impl<'m> March<'_, 'm> {
             return;
         }
         let model: &Model = self.model;
-        let iterations = converged.iterations - converged.releasing + self.failed;
+        let iterations = converged.iterations + self.failed;
         let mut penalties = self.assembler.penalties.clone();
         let last = errors.clone();
         self.rule.lower(model, &all, iterations, &mut penalties);

@@ -16,8 +16,6 @@ pub struct Converged {
     pub augmentations: u32,
     /// Iterations that the augmentations took.
     pub augmenting: u32,
-    /// Iterations of the same step with the stabilisation released.
-    pub releasing: u32,
     /// Sums of forces and contact at the equilibrium.
     pub totals: Totals,
     /// Norm of the forces at the equilibrium.

@@ -71,7 +71,6 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
                         iterations: iteration,
                         augmentations: 0,
                         augmenting: 0,
-                        releasing: 0,
                         totals,
                         force: norms.force,
                         history,
