@@ -343,5 +343,5 @@ fn a_long_line_is_shown_in_part() {
         .map(|at| lines[shown][..at].chars().count());
     assert_eq!(mark, key, "{text}");
     let wide = |l: &&str| l.contains(" │ ") && l.chars().count() > 100;
-    assert!(!lines.iter().any(|l| wide(l)), "{text}");
+    assert!(!lines.iter().any(wide), "{text}");
 }

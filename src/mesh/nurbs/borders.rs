@@ -318,7 +318,7 @@ pub struct BorderPoint {
     pub element: usize,
     /// Undeformed length that it stands for.
     pub length: f64,
-    /// As [`Line::outward`], in any size.
+    /// Factors of both changes of parameters, whose sum is positive for those that lead out of the patch, in any size.
     pub outward: [f64; 2],
     /// Undeformed width of the element across the border.
     pub width: f64,
