@@ -871,7 +871,8 @@ class Builders:
         plane_strain: Literal["x", "y", "z"] | None = None,
         symmetry: Literal["x", "y", "z"] | None = None,
     ) -> Self:
-        """A support: exactly one of `fixed`, `clamped`, `symmetry`, `plane_strain`, `displacement`.
+        """A support: exactly one of `fixed`, `clamped`, `symmetry`, `plane_strain`, `displacement`; the last may also
+        stand beside `clamped`.
 
         Parameters
         ----------
@@ -880,8 +881,9 @@ class Builders:
         on: str or list of str
             Node or face set, `body.set`, a whole body, `body`, or a list of them.
         clamped: bool, optional
-            All three components are zero, and the sheet does not turn about the edge; only for whole edges of a body of
-            kind `nurbs`, which `fixed` leaves hinged.
+            All three components are zero, and the sheet does not turn about the edge; only for edges and curves of
+            trims of a body of kind `nurbs`, which `fixed` leaves hinged. With `displacement` beside it the clamp moves
+            as that says, without turning.
         displacement: dict or list of (float or dict or str), optional
             Prescribed components.
         fixed: bool, optional
@@ -920,8 +922,8 @@ class Builders:
             Node or face set, `body.set`, or a list of them (traction and pressure need faces); for gravity a body, or a
             list.
         couple: float or dict or str, optional
-            Couple per undeformed length along edges of a body of kind `nurbs`, which turns with them (force); positive
-            where it lifts what would lie beyond the edge towards the top. Expressions may use t.
+            Couple per undeformed length along edges or curves of trims of a body of kind `nurbs`, which turns with them
+            (force); positive where it lifts what would lie beyond the edge towards the top. Expressions may use t.
         follower: bool, optional
             The pressure follows the deformed faces (their area and normal).
         force: list of (float or dict or str), optional
@@ -1068,6 +1070,7 @@ class Builders:
         *,
         contact_points: bool | None = None,
         every: int | None = None,
+        shell_stresses: bool | None = None,
         tessellation: int | None = None,
     ) -> Self:
         """What is written. Keys that are not given stay as they are.
@@ -1078,8 +1081,11 @@ class Builders:
             Write the slave points of contacts with friction too, with their values.
         every: int, optional
             Write fields at every n-th accepted step (the last is always written); 0 writes none.
+        shell_stresses: bool, optional
+            Write the stresses of shells at the bottom, in the middle and at the top of the thickness too, in the
+            directions of the mid-surface.
         tessellation: int, optional
             Most subdivisions of a Bezier piece, in either direction, in the tessellated copy of rigid surfaces; fewer
             where the copy is within 2e-4 of the size of the surface, or of the bodies.
         """
-        return self._set("output", _given(contact_points=contact_points, every=every, tessellation=tessellation))
+        return self._set("output", _given(contact_points=contact_points, every=every, shell_stresses=shell_stresses, tessellation=tessellation))

@@ -200,3 +200,29 @@ fn a_strip_is_loaded_moved_and_mirrored_at_its_cut() {
     println!("stretched: {}", found / (1e-6 * stretch));
     assert!(off(found, 1e-6 * stretch) < 1e-4, "{found}");
 }
+
+/// A clamp at the cut that moves without turning, and the same at an edge: a beam clamped at both ends, one of which is displaced, in
+/// closed form `12 E I w / l^3`.
+#[test]
+fn a_clamp_that_moves_bends_a_beam_to_an_s() {
+    let (moved, bending) = (1e-3, 1000.0 * 0.001 / 12.0);
+    let length = 2.9f64;
+    for (still, moves) in [
+        ("strip.edge.1", "strip.trim.1"),
+        ("strip.trim.1", "strip.edge.1"),
+    ] {
+        let supports = json!({
+            "still": {"on": still, "clamped": true},
+            "moves": {"on": moves, "clamped": true, "displacement": {"z": moved}}
+        });
+        let outcome = on_strip(length, supports, json!({}));
+        let [found, other] =
+            ["moves", "still"].map(|name| outcome.at(&format!("force.{name}.z"), 1.0));
+        let exact = 12.0 * bending * moved / length.powi(3);
+        println!("{moves}: {} {}", found / exact, other / exact);
+        assert!(
+            off(found, exact) < 1e-3 && off(other, -exact) < 1e-3,
+            "{found} {exact}"
+        );
+    }
+}
