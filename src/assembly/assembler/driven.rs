@@ -246,7 +246,7 @@ impl<L: PairLaw> Assembler<'_, L> {
     /// Brings the sums of all pairs into the system.
     pub(super) fn close_borders<const TANGENT: bool>(
         &mut self,
-        u: &[f64],
+        (u, time): (&[f64], f64),
         increments: Option<&[f64]>,
         residual: &mut [f64],
         rhs: &mut [f64],
@@ -256,7 +256,8 @@ impl<L: PairLaw> Assembler<'_, L> {
             let Some(driven) = &surface.driven else {
                 continue;
             };
-            if border.active == 0 {
+            // One that nothing drives rests where it is.
+            if border.active == 0 && !driven.idle(time, u)? {
                 return Err(Fault::untouched(self.model, border.surface, driven));
             }
             let (_, theta) = driven.motion(u);
@@ -365,6 +366,11 @@ impl<L: PairLaw> Assembler<'_, L> {
                 let (value, v) = (values[i], vectors.column(i));
                 let held = (0..6).all(|c| free[c] || v[c].abs() < 1e-6);
                 if value > NONE * largest || !held {
+                    continue;
+                }
+                // One that rests and touches nothing has no force at all: any stiffness will do.
+                if border.active == 0 {
+                    own += v * v.transpose();
                     continue;
                 }
                 let force: f64 = (0..6).map(|c| residual[driven.dof(c)] * v[c]).sum();

@@ -215,7 +215,7 @@ impl<L: PairLaw> Assembler<'_, L> {
                 self.carry::<TANGENT>(index, &state.u, time)?;
             }
         }
-        self.close_borders::<TANGENT>(&state.u, increments, residual, rhs)?;
+        self.close_borders::<TANGENT>((&state.u, time), increments, residual, rhs)?;
         totals.contact_rounding = totals.contact_rounding.sqrt();
         totals.contact_norm = self.contact.iter().map(|f| f * f).sum::<f64>().sqrt();
         Ok(())

@@ -138,6 +138,11 @@ impl Driven {
         Ok(std::array::from_fn(|c| if free[c] { all[c] } else { 0.0 }))
     }
 
+    /// Whether no force and no moment acts on what is free at time `t`.
+    pub fn idle(&self, t: f64, u: &[f64]) -> Result<bool, ValueError> {
+        Ok(self.driving(t, u)?.iter().all(|f| *f == 0.0))
+    }
+
     /// The free components in words, e.g. `along z and about y`.
     pub fn words(&self) -> String {
         let free = self.free();

@@ -4,7 +4,7 @@ use super::press::Presser;
 use super::{Driven, Model, ModelError, SurfaceModel, text};
 use crate::contact::law::Penalty;
 use crate::model::error::{At, number};
-use crate::scene::Scene;
+use crate::scene::{Scene, ValueError};
 use nalgebra::Vector6;
 
 /// Part of an element below which lengths have to be told apart: contact rests on penetrations not much larger.
@@ -41,15 +41,16 @@ fn resolved(
 }
 
 /// Moves every driven surface along its force (where it has none, about its moment) until it first touches, and notes
-/// how far. One that is free to turn only, which friction alone resists, stays where it is.
+/// how far. One that is free to turn only, which friction alone resists, stays where it is, as does one whose force sets in
+/// later.
 ///
 /// # Errors
-/// [`ModelError`] where it would never touch, has no contact at all, or nothing drives it at the end of the first step.
+/// [`ModelError`] where it would never touch, has no contact at all, or nothing ever drives it.
 pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
     let first = first_step(model, scene);
     let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
     let u = vec![0.0; 3 * model.nodes.len()];
-    let (mut starts, mut frictional) = (Vec::new(), Vec::new());
+    let (mut starts, mut frictional, mut waiting) = (Vec::new(), Vec::new(), Vec::new());
     for entry in model.driven() {
         let (index, surface, driven) = entry;
         let name = &surface.name;
@@ -65,18 +66,25 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         let driving = driven.driving(first, &u).at(pointer)?;
         let e = Presser::<Penalty>::direction(&driving);
         let turns = presser.turns_with_friction();
-        let Some(e) = e else {
-            if turns {
+        let mut waits = None;
+        let e = match e {
+            Some(e) => e,
+            None if turns => {
                 frictional.push(index);
                 continue;
             }
-            let message = format!(
-                "surface `{name}` is driven by force {}, but the force is zero at the end of the first step \
-                 (t = {first}): nothing presses it against a body",
-                driven.words()
-            );
-            return Err(text(pointer(), message)
-                .help("give it a force from the start, or prescribe the motion until it acts"));
+            None => {
+                let (later, e) = sets_in(model, scene, driven, first).at(pointer)?.ok_or_else(|| {
+                    let message = format!(
+                        "surface `{name}` is driven by force {}, but the force is zero at all times: nothing presses it \
+                         against a body",
+                        driven.words()
+                    );
+                    text(pointer(), message).help("give it a force, or prescribe its motion")
+                })?;
+                waits = Some(later);
+                e
+            }
         };
         let q = Vector6::zeros();
         let found = (presser.advance(0.0, &q, &e)).map_err(|f| text(pointer(), f.to_string()))?;
@@ -101,8 +109,15 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
                 "forces act on the surface: check their sign, the `placement`, the `side` and which components are free",
             ));
         };
-        starts.push((index, e * s));
+        match waits {
+            None => starts.push((index, e * s)),
+            Some(later) => waiting.push(format!(
+                "surface `{name}`: no force acts on it before t = {}: it waits where it is placed",
+                number(later)
+            )),
+        }
     }
+    model.notes.append(&mut waiting);
     for index in frictional {
         if let Some(driven) = &mut model.surfaces[index].driven {
             driven.by_friction = true;
@@ -120,6 +135,35 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
         }
     }
     Ok(())
+}
+
+/// Times at which a force is looked for that is zero at first.
+const LOOKED_AT: u32 = 1000;
+
+/// When something drives a surface that nothing drives at time `first`, to a kink or a thousandth of the run, and in which
+/// direction. The time is the last one before it at which there was no force.
+fn sets_in(
+    model: &Model,
+    scene: &Scene,
+    driven: &Driven,
+    first: f64,
+) -> Result<Option<(f64, Vector6<f64>)>, ValueError> {
+    let u = vec![0.0; 3 * model.nodes.len()];
+    let end = scene.solution.end_time;
+    let even = (1..=LOOKED_AT).map(|i| end * f64::from(i) / f64::from(LOOKED_AT));
+    let kinks = model.kinks.iter().chain(&scene.solution.stops).copied();
+    let mut times: Vec<f64> = (even.chain(kinks))
+        .filter(|t| first < *t && *t <= end)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    let mut before = first;
+    for t in times {
+        if let Some(e) = Presser::<Penalty>::direction(&driven.driving(t, &u)?) {
+            return Ok(Some((before, e)));
+        }
+        before = t;
+    }
+    Ok(None)
 }
 
 /// The end of the first step.
