@@ -3,7 +3,7 @@ use super::Attempts;
 use crate::model::state::State;
 use crate::run::augment::{self, Left};
 use crate::solve::event::Event;
-use crate::solve::newton::{Converged, Patience, StepFailure};
+use crate::solve::newton::{Converged, First, Patience, StepFailure};
 
 impl Attempts<'_, '_> {
     /// Makes multipliers of the tractions and solves again, until every pair is within its tolerances. Attraction points stay
@@ -18,6 +18,12 @@ impl Attempts<'_, '_> {
     ) -> Result<Converged, StepFailure> {
         let (mut all, mut before) = (Vec::new(), Vec::<Left>::new());
         let mut raising = true;
+        // Multipliers take the points to where they slide otherwise than they did.
+        let slides = self.model.pairs.iter().any(|p| p.friction.is_some());
+        let secants = slides.then(|| First {
+            secants: true,
+            ..First::default()
+        });
         loop {
             Left::all(self.model, trial, self.assembler.answers(), &mut all);
             let Some(worst) = (all.iter()).max_by(|a, b| a.relative.total_cmp(&b.relative)) else {
@@ -46,6 +52,7 @@ impl Attempts<'_, '_> {
             if raising && self.raise(step, &all, &before) {
                 // A penalty that Newton's method cannot follow is taken back.
                 let kept = trial.clone();
+                self.first = secants;
                 let stiff = self.newton(step, end, trial, patience);
                 match stiff.and_then(|c| self.none_sunk(end, trial).map(|()| c)) {
                     Ok(next) => converged.augmented(next),
@@ -63,6 +70,7 @@ impl Attempts<'_, '_> {
                 }
             }
             if self.assembler.penalties == penalties {
+                self.first = secants;
                 let next = self.newton(step, end, trial, patience)?;
                 self.none_sunk(end, trial)?;
                 converged.augmented(next);
