@@ -6,8 +6,9 @@ use crate::system::{Dof, Link};
 use covact_geometry::Vec3;
 use nalgebra::Vector6;
 
-/// Part of a row that is new beside those that are held already, below which it holds nothing.
-const NEW: f64 = 1e-6;
+/// Part of a row that is new beside those that are held already, below which it holds nothing: an edge that is held along itself and
+/// has been bent a little holds a turn by a lever that leaves the body to wobble.
+const NEW: f64 = 1e-3;
 
 /// Degrees of freedom `3 node + component` that hold what the supports of a model leave free, where the displacements `u` put its
 /// nodes.

@@ -132,11 +132,16 @@ impl Frame {
     }
 }
 
-/// Checks every connected piece of every body.
+/// Checks every connected piece of every body. Those that a stage has found supports for are held where they are by then.
 pub fn free_motions(model: &Model) -> Vec<FreeMotion> {
+    let found = model.stage.iter().flat_map(|s| &s.start.held);
+    let found: BTreeSet<u32> = found.map(|(dof, _)| dof / 3).collect();
     let mut out = Vec::new();
     for body in &model.bodies {
         for piece in pieces(body.mesh.nodes.len(), body) {
+            if (piece.iter()).any(|n| found.contains(&(body.first_node + n))) {
+                continue;
+            }
             if let Some(free) = free_motion(model, body, &piece) {
                 out.push(FreeMotion {
                     body: body.name.clone(),

@@ -8,13 +8,16 @@ use crate::solve::newton::StepFailure;
 use covact_geometry::Vec3;
 use nalgebra::{Isometry3, Point3};
 
-/// Places along the path of a point that are looked at beside its end.
-const BETWEEN: u32 = 7;
+/// Part of a path that it goes on by at least where the surface is looked for along it.
+const STRIDE: f64 = 1.0 / 256.0;
+/// Sine of the angle between a path and a surface from which on it does not graze it: a straight line between two places of a point
+/// that a turning tool passes cuts the corner, by half the angle that the tool has turned.
+const STEEP: f64 = 0.7;
 
-/// Fails where a point that was open in front of its master at the start of the step has passed through it: it lies below the
-/// master at the end, deeper than the depth, or did so on the way past a rigid surface. Only points that have moved farther
-/// than the depth, relative to the master, are looked at. A point beyond a free border may go anywhere. Leaves the masters at
-/// the end of the step.
+/// Fails where a point that touched its master at the start of the step, or was open in front of it, has passed through it: it lies below the
+/// master at the end, deeper than the depth, or its way has led through a rigid surface. Only points that have moved farther
+/// than the depth or than an element, relative to the master, are looked at. A point beyond a free border may go anywhere. Leaves the
+/// masters at the end of the step.
 pub(super) fn none_passed(
     model: &Model,
     masters: &mut Masters,
@@ -46,16 +49,16 @@ pub(super) fn none_passed(
                 (moved.fold(0.0, f64::max), None)
             }
         };
-        let suspects: Vec<usize> = (slaves.iter().enumerate())
-            .filter(|(i, p)| {
-                let open = !from.points[offset + i].closed && !to.points[offset + i].closed;
-                let own = || {
-                    (model.terms(p))
-                        .fold(Vec3::zeros(), |v, (n, w)| v + moved(model, n, from, to) * w)
-                };
-                open && own().norm() + way > depth
+        let far = depth.min(pair.element_size);
+        let touched = |i: usize| from.points[offset + i].closed;
+        let suspects: Vec<(usize, f64)> = (slaves.iter().enumerate())
+            .filter(|(i, _)| !to.points[offset + i].closed)
+            .map(|(i, p)| {
+                let moved = |n| moved(model, n, from, to);
+                let own = (model.terms(p)).fold(Vec3::zeros(), |v, (n, w)| v + moved(n) * w);
+                (i, own.norm() + way)
             })
-            .map(|(i, _)| i)
+            .filter(|(_, moved)| *moved > far)
             .collect();
         if suspects.is_empty() {
             continue;
@@ -64,12 +67,17 @@ pub(super) fn none_passed(
         let master = masters
             .at(model, index, &from.u, start)
             .map_err(Fault::from)?;
+        // The distance of a surface changes by no more than a point moves.
         let front: Vec<usize> = (suspects.into_iter())
-            .filter(|&i| {
+            .filter(|&(i, moved)| {
                 let x = model.point_position(&slaves[i], &from.u);
                 let seen = master.see(i, &x, from.points[offset + i].hint);
-                seen.is_some_and(|s| !s.free && s.signed_distance >= 0.0)
+                let touches = poses.is_some() && touched(i);
+                seen.is_some_and(|s| {
+                    !s.free && (touches || s.signed_distance >= 0.0) && s.signed_distance < moved
+                })
             })
+            .map(|(i, _)| i)
             .collect();
         masters.update(model, &to.u);
         let master = masters.at(model, index, &to.u, end).map_err(Fault::from)?;
@@ -77,8 +85,10 @@ pub(super) fn none_passed(
         for i in front {
             let ends = [from, to].map(|s| model.point_position(&slaves[i], &s.u));
             let hint = to.points[offset + i].hint;
-            let behind = (master.see(i, &ends[1], hint)).is_some_and(|s| s.behind);
-            if behind || on_the_way(&master, i, ends, poses.as_ref()) {
+            let deep = |x: &Vec3, hint| master.see(i, x, hint).is_some_and(|s| s.behind);
+            // One that touched may have slid over a border, and down beside it.
+            let behind = !touched(i) && deep(&ends[1], hint);
+            if behind || on_the_way(&master, (i, touched(i)), ends, poses.as_ref()) {
                 points += 1;
                 at = ends[1];
             }
@@ -111,18 +121,31 @@ fn farthest(surface: &SurfaceModel, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f
     corners.map(|p| (b * p - a * p).norm()).fold(0.0, f64::max)
 }
 
-/// Whether a point is deep below a rigid surface somewhere along its straight path as the surface sees it.
+/// Whether the straight path of a point, as a rigid surface sees it, leads through the surface. It is followed by the distance from
+/// the surface, which nothing on the way falls short of.
 fn on_the_way(
     master: &MasterNow,
-    point: usize,
+    (point, touched): (usize, bool),
     ends: [Vec3; 2],
     poses: Option<&(Isometry3<f64>, Isometry3<f64>)>,
 ) -> bool {
     let Some((a, b)) = poses else { return false };
     let start = (b * a.inverse_transform_point(&Point3::from(ends[0]))).coords;
-    (1..=BETWEEN).any(|k| {
-        let s = f64::from(k) / f64::from(BETWEEN + 1);
-        let x = start + (ends[1] - start) * s;
-        (master.see(point, &x, None)).is_some_and(|s| s.behind)
-    })
+    let path = ends[1] - start;
+    let length = path.norm();
+    let (mut way, mut outside) = (0.0, true);
+    while way < length {
+        let x = start + path * (way / length);
+        let Some(seen) = master.see(point, &x, None) else {
+            return false;
+        };
+        // Past a free border it comes to the other side without touching. What was grazed may be left again, or lead deep below.
+        let entered = !seen.free && seen.signed_distance < 0.0 && outside;
+        if seen.behind && !touched || entered && seen.normal.dot(&path) < -STEEP * length {
+            return true;
+        }
+        outside = seen.signed_distance >= 0.0;
+        way += seen.distance.max(STRIDE * length);
+    }
+    false
 }

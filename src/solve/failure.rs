@@ -142,7 +142,7 @@ pub enum StepFailure {
     /// Points went through their master within the step.
     #[error(
         "contact `{pair}`: {points} point(s), one of them at ({:.6e}, {:.6e}, {:.6e}), passed through {master} within the \
-         step, deeper than its `depth` {depth:.6e}: take smaller steps or a larger `depth`", at[0], at[1], at[2]
+         step, or below its `depth` {depth:.6e}: take smaller steps", at[0], at[1], at[2]
     )]
     PassedThrough {
         /// Name of the contact.

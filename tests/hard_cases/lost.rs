@@ -208,3 +208,31 @@ fn a_column_that_stays_straight_is_told_to_be_unstable() {
         "{reason}"
     );
 }
+
+/// A mat that falls on a rod thinner than the depth up to which contact is looked for has its ends far below it in the first step, and
+/// would have fallen through: no point of it lies deep below the surface at any time.
+#[test]
+fn a_mat_that_falls_on_a_rod_hangs_over_it() {
+    let scene = json!({
+        "covact": 1,
+        "materials": { "rubber": { "neo_hooke": { "E": 3e7, "nu": 0.45, "density": 1200 } } },
+        "bodies": { "mat": {
+            "mesh": { "plate": { "size": [0.02, 0.2], "thickness": 0.002, "elements": [2, 26], "origin": [0, 0.05, 0.1315] } },
+            "material": "rubber"
+        } },
+        "surfaces": { "rod": {
+            "cylinder": { "radius": 0.01, "length": 0.3, "center": [0, 0.15, 0.12], "axis": [1, 0, 0] }
+        } },
+        "contacts": { "c": { "slave": "mat.bottom", "master": "rod", "friction": 0.5 } },
+        "supports": { "w": { "on": "mat.x_min", "symmetry": "x" } },
+        "loads": { "g": { "on": "mat", "gravity": [0, 0, "-9.81*t"] } },
+        "output": { "every": 0 }
+    });
+    let outcome = done(&scene);
+    let weight = 0.02 * 0.2 * 0.002 * 1200.0 * 9.81;
+    let carried = outcome.at("force.rod.z", 1.0);
+    assert!(
+        (carried / weight - 1.0).abs() < 1e-3,
+        "{carried} of {weight}"
+    );
+}

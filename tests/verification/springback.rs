@@ -241,3 +241,54 @@ fn a_punch_that_goes_back_leaves_no_force() {
     }
     assert!(run.done());
 }
+
+/// A strip that a soft pad has pressed on a drum, held along itself at the middle of one edge and across at one side. Once it is bent,
+/// that edge is not quite straight and would hold the strip's turn about it by a lever of nothing: two supports have to be found, for
+/// the way up and for that turn, and they carry nothing.
+#[test]
+fn a_strip_held_by_one_edge_is_found_its_supports() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {
+            "al": { "j2": {
+                "E": 70000, "nu": 0.33, "hardening": { "table": [[0, 120], [0.02, 160], [0.1, 210]] }
+            } },
+            "pu": { "neo_hooke": { "E": 20, "nu": 0.45 } }
+        },
+        "bodies": {
+            "strip": {
+                "mesh": { "plate": { "size": [40, 6], "thickness": 0.8, "elements": [20, 2], "origin": [0, 0, 0.41] } },
+                "material": "al"
+            },
+            "pad": {
+                "mesh": { "block": { "min": [10, 0, 0.83], "max": [30, 6, 6], "elements": [8, 2, 3] } },
+                "material": "pu"
+            }
+        },
+        "surfaces": { "drum": {
+            "cylinder": { "radius": 10, "length": 20, "center": [20, 3, -10], "axis": [0, 1, 0] }
+        } },
+        "contacts": {
+            "below": { "slave": "strip.bottom", "master": "drum", "friction": 0.1 },
+            "above": { "slave": "strip.top", "master": "pad.bottom", "friction": 0.1 }
+        },
+        "supports": {
+            "side": { "on": "strip.y_min", "symmetry": "y" },
+            "edge": { "on": "strip.x_min", "mid_surface": true, "displacement": { "x": 0 } },
+            "ram": { "on": "pad.top", "displacement": {
+                "x": 0, "y": 0, "z": { "table": [[0, 0], [1, -0.5], [2, -0.5]] }
+            } }
+        },
+        "solution": { "end_time": 2 },
+        "stages": [{ "name": "press", "until": 1 }, { "name": "release", "release": "forces" }],
+        "output": { "every": 0 }
+    });
+    let loaded = scene::parse(&scene.to_string(), "pad.json").expect("a scene");
+    let mut run = Simulation::new(loaded, Options::default()).expect("a run");
+    while run.step().expect("a step").is_some() {}
+    assert!(run.done());
+    let release = &run.summary().stages[1];
+    assert_eq!(release.found_supports, 2);
+    assert!(release.force > 1.0, "{release:?}");
+    assert!(release.reaction < 1e-4 * release.force, "{release:?}");
+}
