@@ -123,10 +123,7 @@ impl Rest {
         u: &[V<D>; 5],
     ) -> Components<D> {
         let rest = [0, 1].map(|i| self.p[i].map(D::from));
-        let parts = [
-            cross(&u[0], &frame.at.r[1]),
-            cross(&rest[0], &u[1]),
-        ];
+        let parts = [cross(&u[0], &frame.at.r[1]), cross(&rest[0], &u[1])];
         let change = [0, 1, 2].map(|c| parts[0][c] + parts[1][c]);
         let area = frame.at.area;
         let both = [0, 1, 2].map(|c| frame.at.n[c] * area + self.n[c] * self.area);

@@ -19,9 +19,9 @@ mod seam_tests;
 mod strain;
 mod stress;
 mod tangent;
-mod tether;
 #[cfg(test)]
 mod tests;
+mod tether;
 
 use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::V;

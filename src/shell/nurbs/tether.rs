@@ -73,7 +73,10 @@ fn resistances(sheet: &NurbsSheet) -> Vec<Option<f64>> {
 /// Weights by which the points `from` continue to point `to` of the net of an element: exact for rigid motions, for polynomials of
 /// degree 2 where there are points enough.
 fn continuation(to: usize, from: &[usize], x: &[Vec3; NODES]) -> Option<[f64; NODES]> {
-    let size = from.iter().map(|a| (x[*a] - x[to]).norm()).fold(0.0, f64::max);
+    let size = from
+        .iter()
+        .map(|a| (x[*a] - x[to]).norm())
+        .fold(0.0, f64::max);
     let off = |a: usize| {
         let line = |a: usize, to: usize| a as f64 - to as f64;
         [line(a % 4, to % 4), line(a / 4, to / 4)]
@@ -157,7 +160,9 @@ impl Tether {
             let firm: Vec<usize> = (0..NODES).filter(|a| !loose(nodes[*a])).collect();
             let others: Vec<usize> = (0..NODES).filter(|a| *a != to).collect();
             let found = [firm, others].into_iter().filter(|from| !from.is_empty());
-            let Some(weights) = found.into_iter().find_map(|from| continuation(to, &from, &x))
+            let Some(weights) = found
+                .into_iter()
+                .find_map(|from| continuation(to, &from, &x))
             else {
                 continue;
             };

@@ -348,10 +348,6 @@ fn contacts_that_are_not_there_yet() {
     };
     for (scene, words) in [
         (
-            with("master", json!("sheet.bottom")),
-            ["/contacts/c/master", "masters on the same body"],
-        ),
-        (
             contact(json!({"slave": "block.top", "master": "sheet.bottom", "passes": "edges"})),
             ["/contacts/c/passes", "two passes"],
         ),

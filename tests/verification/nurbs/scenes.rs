@@ -70,3 +70,33 @@ fn a_sheet_over_hills_does_not_feel_borders() {
         assert!(a.abs() > 0.1 && off(a, b) < 1e-6, "{name}: {a} {b}");
     }
 }
+
+/// `snap_clip_nurbs`: both strips are unstressed before and after, so that friction takes all the work of pushing; the wall
+/// bears what the push exerts.
+#[test]
+fn a_clip_snaps() {
+    let mut scene = scene_json("snap_clip_nurbs.json");
+    for body in ["hook", "catch"] {
+        set(&mut scene, &format!("/bodies/{body}/nurbs/size"), 3);
+    }
+    scene["output"] = json!({"every": 0});
+    let outcome = run_to_end(&scene);
+    let [work, friction, stored] = ["energy.external", "energy.dissipated", "energy.internal"]
+        .map(|name| outcome.at(name, 1.0));
+    println!("work {work}, friction {friction}, stored {stored}");
+    assert!(
+        friction > 0.1 && off(work, friction) < 1e-2,
+        "{work} {friction}"
+    );
+    assert!(stored < 1e-10 * work);
+    let all = ["force.push.x", "force.wall.x"].map(|name| outcome.column(name));
+    let largest = all[0].iter().fold(0.0, |m: f64, f| m.max(f.abs()));
+    // Held back at first, drawn in behind the bumps.
+    assert!(
+        all[0].iter().any(|f| *f > 0.1 * largest) && largest > 0.03,
+        "{largest}"
+    );
+    for (push, wall) in all[0].iter().zip(&all[1]) {
+        assert!((push + wall).abs() < 1e-6 * largest, "{push} {wall}");
+    }
+}
