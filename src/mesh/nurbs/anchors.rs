@@ -6,6 +6,9 @@ use crate::mesh::Mesh;
 /// what one anchor an element holds; those of every cut element are more than all of them have, and lock the thinner it is.
 const SPACING: f64 = 1.0;
 
+/// Number of them up to which there are two an element: a curve that ends has more numbers than elements, and a short one needs them.
+const SHORT: f64 = 4.0;
+
 /// Least number of them: one would not keep a curve from turning.
 const LEAST: usize = DEGREE - 1;
 
@@ -54,7 +57,8 @@ impl NurbsSheet {
                 starts.push(starts[starts.len() - 1] + length(*piece));
             }
             let total = starts[run.len()];
-            let count = ((total / SPACING).ceil() as usize).max(least);
+            let short = (2.0 * total / SPACING).min(SHORT);
+            let count = ((total / SPACING).max(short).ceil() as usize).max(least);
             let at = |way: f64| -> f64 {
                 let k = starts.partition_point(|s| *s <= way).clamp(1, run.len()) - 1;
                 let [a, b] = run[k];
