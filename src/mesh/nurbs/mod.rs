@@ -1,7 +1,6 @@
 //! CAD surfaces as thin shells: one NURBS patch is the mid-surface, its knot spans are the elements, its control points the
 //! nodes.
 mod anchors;
-mod border_points;
 mod borders;
 mod edges;
 mod error;

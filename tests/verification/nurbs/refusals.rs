@@ -337,7 +337,10 @@ fn contacts_that_are_not_there_yet() {
         scene
     };
     let good = json!({"slave": "sheet.top", "master": "ball"});
-    assert_eq!(problems(&contact(good), &plate()), Vec::<String>::new());
+    assert_eq!(
+        problems(&contact(good.clone()), &plate()),
+        Vec::<String>::new()
+    );
     for (scene, words) in [
         (
             contact(json!({"slave": "block.top", "master": "sheet.bottom", "passes": "edges"})),

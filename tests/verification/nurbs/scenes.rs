@@ -6,10 +6,17 @@ use serde_json::json;
 /// A scene that must end at the defaults with no more than 12 iterations a step on average, failed ones included, and without
 /// warnings.
 fn run_to_end(scene: &serde_json::Value) -> Outcome {
+    let outcome = run_with_peaks(scene);
+    let warnings = &outcome.summary.warnings;
+    assert!(warnings.is_empty(), "{warnings:?}");
+    outcome
+}
+
+/// The same where a force may have had its peak between two steps, which is a warning.
+fn run_with_peaks(scene: &serde_json::Value) -> Outcome {
     let outcome = solve(scene);
     let summary = &outcome.summary;
     assert_eq!(summary.status.name(), "done", "{:?}", summary.reason);
-    assert!(summary.warnings.is_empty(), "{:?}", summary.warnings);
     let sum = |name: &str| outcome.column(name).iter().sum::<f64>();
     let steps = outcome.column("time").len() as f64;
     let mean = (sum("iterations") + sum("iterations.failed")) / steps;
@@ -80,7 +87,10 @@ fn a_clip_snaps() {
         set(&mut scene, &format!("/bodies/{body}/nurbs/size"), 3);
     }
     scene["output"] = json!({"every": 0});
-    let outcome = run_to_end(&scene);
+    // The line of contact goes from point to point, which changes the force by some percent.
+    let outcome = run_with_peaks(&scene);
+    let peak = |w: &String| w.contains("to see its peak");
+    assert!(outcome.summary.warnings.iter().all(peak));
     let [work, friction, stored] = ["energy.external", "energy.dissipated", "energy.internal"]
         .map(|name| outcome.at(name, 1.0));
     println!("work {work}, friction {friction}, stored {stored}");

@@ -85,7 +85,8 @@ fn the_walls_of_a_tube_meet() {
         .iter()
         .zip(whole.column("points.active"))
     {
-        assert_eq!(active > 0.0, *time > 0.98, "{time}: {active}");
+        // The walls are 2 R - T apart at time .94.
+        assert_eq!(active > 0.0, *time > 0.94, "{time}: {active}");
     }
     let at = |outcome: &Outcome, name: &str| outcome.at(name, 1.0);
     let push = [&whole, &half].map(|o| at(o, "force.push.z"));
