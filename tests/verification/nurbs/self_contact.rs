@@ -41,7 +41,7 @@ fn pressed(quarter: bool, way: f64, penalty: f64) -> Outcome {
         "covact": 1,
         "materials": {"m": {"st_venant_kirchhoff": {"E": 1000, "nu": 0}}},
         "bodies": {"tube": {
-            "nurbs": {"file": "face.json", "thickness": T, "elements": [if quarter { 8 } else { 16 }, 1]},
+            "nurbs": {"file": "face.json", "thickness": T, "elements": [if quarter { 16 } else { 32 }, 1]},
             "material": "m"
         }},
         "contacts": {"walls": {
@@ -77,25 +77,21 @@ fn pressed(quarter: bool, way: f64, penalty: f64) -> Outcome {
 /// middle. Forces and moments of the walls balance, and nothing is in contact before.
 #[test]
 fn the_walls_of_a_tube_meet() {
-    let (way, penalty) = (2.0 * R - T + 0.3, 400.0);
+    // Where walls are inclined, the gap along a normal differs from that along z by a part of the overlap: a small one.
+    let (way, penalty) = (2.0 * R - T + 0.01, 400.0);
     let whole = pressed(false, way, penalty);
     let half = pressed(true, way, penalty);
-    for (time, active) in whole
-        .column("time")
-        .iter()
-        .zip(whole.column("points.active"))
-    {
-        // The walls are 2 R - T apart at time .94.
-        assert_eq!(active > 0.0, *time > 0.94, "{time}: {active}");
+    for (time, active) in (whole.column("time").iter()).zip(whole.column("points.active")) {
+        // The walls meet where the way is 2 R - T, at time .995.
+        assert_eq!(active > 0.0, *time > 0.99, "{time}: {active}");
     }
     let at = |outcome: &Outcome, name: &str| outcome.at(name, 1.0);
     let push = [&whole, &half].map(|o| at(o, "force.push.z"));
-    let pressed = at(&half, "force.mirror.z");
-    println!(
-        "{push:?}, of the wall {pressed}, before {}",
-        whole.at("force.push.z", 0.95)
-    );
-    assert!(push[0] < -1.0 && off(push[0], push[1]) < 1e-6, "{push:?}");
+    let before = [&whole, &half].map(|o| o.at("force.push.z", 0.9));
+    println!("{push:?}, before {before:?}");
+    assert!(push[0] < 2.0 * before[0], "{push:?} {before:?}");
+    assert!(off(before[0], before[1]) < 1e-5, "{before:?}");
+    assert!(off(push[0], push[1]) < 1e-3, "{push:?}");
     for name in ["imbalance.force.walls", "imbalance.moment.walls"] {
         let left = at(&whole, name);
         println!("{name}: {left:e}");
