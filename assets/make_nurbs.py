@@ -1,8 +1,10 @@
-"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json, cad/dish.json and cad/flat.json.
+"""Writes faces that the NURBS shells of shipped scenes are made of, lengths in mm, as cad/tube.json, cad/dish.json,
+cad/flat.json and cad/clip.json.
 `covact convert cad/tube.json -o cad/tube.igs` makes the IGES file that the scene reads; the others likewise.
 
 tube  a cylinder about y, radius 20, from y = -30 to 30: two rational half-turns, the upper one (z > 0) and the lower one
 dish  z = .02 x^2 + .025 y^2 over 30 by 24 about the origin, polynomial
+clip  a strip of 30 by 6 from the origin in z = 0 with a bump near its free end, polynomial, in eight spans along x
 flat  1: a square of 50 from the origin in z = 0; 2: a strip of 130 by 2 from the origin in z = .5 (for studies, read as JSON)
 """
 
@@ -46,6 +48,13 @@ def dish():
     yield patch(1, "dish", [2, 2], [QUADRATIC, QUADRATIC], points)
 
 
+def clip():
+    line = [(0, 0), (3, 0), (8, 0), (13, 0), (17, 0), (20, 1.7), (22, 1.85), (24, 1.7), (27, 0), (29, 0), (30, 0)]
+    knots = [0.0] * 3 + [k / 8.0 for k in range(9)] + [1.0] * 3
+    points = [[float(x), y, float(z), 1.0] for y in (0.0, 6.0) for x, z in line]
+    yield patch(1, "clip", [3, 1], [knots, LINEAR], points)
+
+
 def flat():
     for entity, (name, (x, y), z) in enumerate((("plate", (50.0, 50.0), 0.0), ("strip", (130.0, 2.0), 0.5))):
         points = [[i * x, j * y, z, 1.0] for j in range(2) for i in range(2)]
@@ -62,4 +71,5 @@ def write(name, patches):
 if __name__ == "__main__":
     write("tube", tube())
     write("dish", dish())
+    write("clip", clip())
     write("flat", flat())

@@ -9,8 +9,10 @@
 //! - Now, the outward normals of the point's faces and of the facet oppose each other. This leaves out the back of a wall
 //!   whose front the point meets.
 use crate::contact::kind::MasterKind;
+use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
+use crate::shell::SeamSpan;
 use covact_geometry::{MovingFacets, Vec3};
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -108,7 +110,7 @@ impl OwnFacets {
         facets: &MovingFacets,
         distance: f64,
     ) -> Self {
-        let graph = Graph::new(mesh);
+        let graph = Graph::new(mesh, &[]);
         let corners = |f: &Face| mesh.face_corners(*f);
         // Which slave faces a set of nodes belongs to, and which facets a node.
         let mut faces_at: HashMap<u32, Vec<u32>> = HashMap::new();
@@ -162,6 +164,57 @@ impl OwnFacets {
         out
     }
 
+    /// The same for a face of a sheet, whose points have levers. Distances go along its control net and over its seams, between the four
+    /// control points in the middle of the nets of both elements.
+    pub fn of_sheet(
+        (mesh, seams): (&Mesh, &[SeamSpan]),
+        first: u32,
+        points: &[SlavePoint],
+        levers: &[Lever],
+        facets: &MovingFacets,
+        distance: f64,
+    ) -> Self {
+        let graph = Graph::new(mesh, seams);
+        let mut facets_at: HashMap<u32, Vec<u32>> = HashMap::new();
+        for facet in 0..facets.len() as u32 {
+            let nodes = facets.nodes(facet);
+            for n in MIDDLE.into_iter().filter_map(|a| nodes.get(a)) {
+                facets_at.entry(n - first).or_default().push(facet);
+            }
+        }
+        let mut out = OwnFacets {
+            distance,
+            cell_of: Vec::with_capacity(points.len()),
+            starts: vec![0],
+            facets: Vec::new(),
+            corner_starts: vec![0],
+            corners: Vec::new(),
+        };
+        let mut search = Search::new(mesh.nodes.len());
+        let mut last = None;
+        let mut near = Vec::new();
+        for lever in (points.iter()).filter_map(|p| levers.get(p.lever_number()?)) {
+            if last != Some(lever.nodes) {
+                last = Some(lever.nodes);
+                let [a, b, c, d] = MIDDLE.map(|a| lever.nodes[a]);
+                near.clear();
+                let from = [a, b, c, d].map(|n| n - first);
+                search.run(&graph, &from, distance, |node| {
+                    near.extend(facets_at.get(&node).into_iter().flatten());
+                });
+                near.sort_unstable();
+                near.dedup();
+                out.facets.extend_from_slice(&near);
+                out.starts.push(out.facets.len() as u32);
+                let top = lever.height > 0.0;
+                (out.corners).push(if top { [a, b, c, d] } else { [b, a, d, c] });
+                out.corner_starts.push(out.corners.len() as u32);
+            }
+            out.cell_of.push(out.starts.len() as u32 - 2);
+        }
+        out
+    }
+
     /// Whether a facet is left out for a point whatever the state.
     #[inline]
     pub fn leaves_out(&self, point: usize, facet: u32) -> bool {
@@ -171,17 +224,20 @@ impl OwnFacets {
     }
 }
 
-/// Nodes that share an element, with their undeformed distance.
+/// Control points in the middle of the net of a bicubic element, xi1 fastest.
+const MIDDLE: [usize; 4] = [5, 6, 9, 10];
+
+/// Nodes that share an element or a seam, with their undeformed distance.
 struct Graph {
     starts: Vec<u32>,
     next: Vec<(u32, f64)>,
 }
 
 impl Graph {
-    fn new(mesh: &Mesh) -> Self {
+    fn new(mesh: &Mesh, seams: &[SeamSpan]) -> Self {
         let mut pairs: Vec<(u32, u32)> = Vec::new();
-        for e in 0..mesh.elements() {
-            let nodes = mesh.element(e);
+        let elements = (0..mesh.elements()).map(|e| mesh.element(e));
+        for nodes in elements.chain(seams.iter().map(|s| &s.nodes[..])) {
             for &a in nodes {
                 pairs.extend(nodes.iter().filter(|b| **b != a).map(|&b| (a, b)));
             }

@@ -11,6 +11,7 @@ mod converged;
 mod headway;
 mod keeping;
 mod line_search;
+mod patience;
 mod rigid_limit;
 mod small;
 mod stick_limit;
@@ -18,6 +19,7 @@ mod workspace;
 
 pub use converged::Converged;
 use headway::{hops, nearly, oscillation, round};
+pub use patience::Patience;
 pub use rigid_limit::RigidLimit;
 pub use stick_limit::StickLimit;
 pub use workspace::Workspace;
@@ -36,15 +38,6 @@ use crate::model::state::State;
 use crate::scene;
 use crate::system::linear::{Factorization, LinearError, LinearSolver, Method};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// How long Newton's method goes on without getting nearer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Patience {
-    /// Another start is at hand: give up after a few iterations without headway.
-    Short,
-    /// Use all iterations.
-    Long,
-}
 
 /// What the first linearisations of a start make of contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -183,7 +176,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             keep |= iteration >= 2 || hops(&history);
             let held = self.assembler.linearization.keep_active;
             // The state before the first solve may be converged as it stands only if nothing was prescribed to move.
-            let settled = !pending && !held && (iteration == 0 || totals.changed == 0 || vanished);
+            let rough = self.patience == Patience::Rough;
+            let still = iteration == 0 || totals.changed == 0 || vanished || rough;
+            let settled = !pending && !held && still;
             observer.event(&Event::Iteration {
                 step,
                 iteration,
@@ -201,6 +196,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             let stalled = since_best >= STALLS && norms.residual >= best;
             let tolerance = match stalled && self.settings.tolerance >= LOOSE {
                 true => STALLED * self.settings.tolerance,
+                false if rough => self.settings.tolerance.max(patience::ROUGH),
                 false => self.settings.tolerance,
             };
             touched |= totals.active > 0;

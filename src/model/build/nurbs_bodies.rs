@@ -241,13 +241,6 @@ impl Builder<'_> {
             );
             Err(text(at(field), message).help(help.to_owned()))
         };
-        if contact.is_own(&self.scene.surfaces) {
-            return refuse(
-                "master",
-                "masters on the same body",
-                "take another body or a rigid surface as master",
-            );
-        }
         let described = contact.surface(&self.scene.surfaces);
         if described.is_some_and(|s| s.motion.free.is_some()) {
             return refuse(

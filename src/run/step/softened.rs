@@ -36,7 +36,7 @@ impl Attempts<'_, '_> {
                 self.restart(end, trial)?;
                 augment::forget(self.model, trial);
             }
-            match self.newton(step, end, trial, Patience::Long) {
+            match self.newton(step, end, trial, Patience::Rough) {
                 Ok(converged) => iterations += converged.iterations,
                 Err(failure) => return self.eased(step, end, trial, kept, failure, penalties),
             }

@@ -35,6 +35,18 @@ pub(super) fn cross<D: DualNum<f64> + Copy>(a: &V<D>, b: &V<D>) -> V<D> {
     ]
 }
 
+/// `a + b` of an undeformed vector and a change.
+#[inline(always)]
+pub(super) fn moved<D: DualNum<f64> + Copy>(a: &V<f64>, b: &V<D>) -> V<D> {
+    [0, 1, 2].map(|c| b[c] + a[c])
+}
+
+/// `a . b` of an undeformed vector.
+#[inline(always)]
+pub(super) fn along<D: DualNum<f64> + Copy>(a: &V<f64>, b: &V<D>) -> D {
+    b[0] * a[0] + b[1] * a[1] + b[2] * a[2]
+}
+
 /// Metric `rho_i . rho_j` of two tangents.
 #[inline(always)]
 pub(super) fn metric<D: DualNum<f64> + Copy>(r: &[V<D>; 2]) -> Components<D> {
@@ -77,6 +89,51 @@ impl<D: DualNum<f64> + Copy> Normal<D> {
     }
 }
 
+/// Membrane strains `eps_ij = (P_i . u_j + P_j . u_i + u_i . u_j) / 2` of undeformed tangents `P_i` and derivatives `u_i` of the
+/// displacement, the shear twice. A difference of metrics would leave the rounding of positions, as large as the forces of a sheet
+/// that is moved along by its edge.
+#[inline(always)]
+pub(super) fn membrane<D: DualNum<f64> + Copy>(
+    rest: [&V<f64>; 2],
+    [u1, u2]: &[V<D>; 2],
+) -> Components<D> {
+    [
+        along(rest[0], u1) + dot(u1, u1) * 0.5,
+        along(rest[1], u2) + dot(u2, u2) * 0.5,
+        along(rest[0], u2) + along(rest[1], u1) + dot(u1, u2),
+    ]
+}
+
+/// An undeformed point of the surface: derivatives of the position as in [`Second`], unit normal, and `|P_1 x P_2|`.
+#[derive(Debug, Clone)]
+pub(super) struct Rest {
+    pub p: [V<f64>; 5],
+    pub n: V<f64>,
+    pub area: f64,
+}
+
+impl Rest {
+    /// Changes of curvature `kap_ij = H_ij - h_ij = - u_ij . n - P_ij . (n - N)` of a frame at derivatives `u` of the displacement, the
+    /// last twice. The change of the normal is that of `c = rho_1 x rho_2` over its length `a`, which changes by
+    /// `(c - C) . (c + C) / (a + A)`: no difference of positions, as in [`membrane`].
+    #[inline(always)]
+    pub fn bending<D: DualNum<f64> + Copy>(
+        &self,
+        frame: &Frame<D>,
+        u: &[V<D>; 5],
+    ) -> Components<D> {
+        let rest = [0, 1].map(|i| self.p[i].map(D::from));
+        let parts = [cross(&u[0], &frame.at.r[1]), cross(&rest[0], &u[1])];
+        let change = [0, 1, 2].map(|c| parts[0][c] + parts[1][c]);
+        let area = frame.at.area;
+        let both = [0, 1, 2].map(|c| frame.at.n[c] * area + self.n[c] * self.area);
+        let longer = dot(&change, &both) / (area + self.area);
+        let turned = [0, 1, 2].map(|c| (change[c] - longer * self.n[c]) / area);
+        [(2, 1.0), (3, 1.0), (4, 2.0)]
+            .map(|(k, times)| -(dot(&u[k], &frame.at.n) + along(&self.p[k], &turned)) * times)
+    }
+}
+
 /// [`Normal`] with curvatures.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame<D> {
@@ -88,10 +145,10 @@ pub(super) struct Frame<D> {
 }
 
 impl<D: DualNum<f64> + Copy> Frame<D> {
+    /// Of derivatives of the position (11, 22, 12 the last ones).
     #[inline(always)]
-    pub fn new(n: &Second, x: &[V<D>; NODES]) -> Self {
-        let at = Normal::new([combine(&n[0], x), combine(&n[1], x)]);
-        let second = [2, 3, 4].map(|k: usize| combine(&n[k], x));
+    pub fn new([r1, r2, second @ ..]: [V<D>; 5]) -> Self {
+        let at = Normal::new([r1, r2]);
         Frame {
             h: second.map(|r| dot(&r, &at.n)),
             gamma: at.up.map(|up| second.map(|r| dot(&r, &up))),

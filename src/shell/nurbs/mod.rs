@@ -21,6 +21,7 @@ mod stress;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod tether;
 
 use super::error::{ElementFault, FaultCause, ShellError};
 use super::kinematics::V;
@@ -39,6 +40,7 @@ pub use seam::{SEAM_DOFS, SEAM_NODES, SeamSpan};
 use std::ops::Range;
 use strain::Strains;
 pub use stress::SheetResultants;
+use tether::Tether;
 
 /// Runs a block of code with `$law` bound to the concrete law of a [`Sheet`].
 macro_rules! with_sheet {
@@ -101,6 +103,8 @@ pub struct NurbsBlock {
     seams: Vec<SeamSpan>,
     /// Where curves of trims are held.
     anchors: Vec<AnchorSpring>,
+    /// Control points that a trim leaves next to nothing of, by elements.
+    tethers: Vec<Tether>,
 }
 
 /// Points that strains are worked out at together: all of an element, or those in a part of one that a trim cuts, whose membrane
@@ -146,7 +150,9 @@ impl NurbsBlock {
             starts: Vec::new(),
             seams: SeamSpan::all(sheet, &law)?,
             anchors: Vec::new(),
+            tethers: Vec::new(),
         };
+        block.tethers = Tether::all(sheet, block.bending());
         let places: Vec<(f64, f64)> = (rule.iter())
             .map(|(s, w)| (0.5 * (1.0 + s), 0.5 * w))
             .collect();
@@ -274,7 +280,7 @@ impl NurbsBlock {
         let seams = groups
             + size_of_val(&self.seams[..])
             + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
-        let anchors = size_of_val(&self.anchors[..]);
+        let anchors = size_of_val(&self.anchors[..]) + size_of_val(&self.tethers[..]);
         size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams + anchors
     }
 
@@ -295,12 +301,17 @@ impl NurbsBlock {
         }
     }
 
-    /// Points of the borders of an element, with the first of its groups.
-    fn held_in(&self, group: usize) -> &[BorderPoint] {
-        let e = match self.groups.is_empty() {
+    /// The element of a group.
+    fn element_of(&self, group: usize) -> usize {
+        match self.groups.is_empty() {
             true => group,
             false => self.groups[group].element as usize,
-        };
+        }
+    }
+
+    /// Points of the borders of an element, with the first of its groups.
+    fn held_in(&self, group: usize) -> &[BorderPoint] {
+        let e = self.element_of(group);
         match self.groups_of(e).start == group {
             true => self.held(e),
             false => &[],
@@ -315,11 +326,6 @@ impl NurbsBlock {
         }
     }
 
-    /// Deformed control points of element `e`.
-    fn positions<D: DualNum<f64> + Copy>(&self, e: usize, u: &[V<D>; NODES]) -> [V<D>; NODES] {
-        std::array::from_fn(|a| [0, 1, 2].map(|c| u[a][c] + self.reference[e][a][c]))
-    }
-
     /// Energy and forces at displacements `u`, for any scalar.
     ///
     /// # Errors
@@ -329,10 +335,9 @@ impl NurbsBlock {
         e: usize,
         u: &[V<D>; NODES],
     ) -> Result<(D, [V<D>; NODES]), ElementFault> {
-        let x = self.positions(e, u);
         let (mut energy, mut forces) = (D::zero(), [[D::zero(); 3]; NODES]);
         for group in self.groups_of(e) {
-            let strains = Strains::new(self, group, &x);
+            let strains = Strains::new(self, group, u);
             let (w, f) = with_sheet!(&self.plane, law => strains.forces(self, group, law))
                 .map_err(|cause| fault(e, cause))?;
             energy += w;
@@ -354,12 +359,11 @@ impl NurbsBlock {
         out: &mut NurbsSystem,
     ) -> Result<(), ElementFault> {
         let u: [V<f64>; NODES] = u.map(Into::into);
-        let x = self.positions(e, &u);
         out.f.fill(0.0);
         out.k.fill(0.0);
         out.energy = 0.0;
         for group in self.groups_of(e) {
-            let strains = Strains::new(self, group, &x);
+            let strains = Strains::new(self, group, &u);
             with_sheet!(&self.plane, law => tangent::linearize(&strains, self, group, law, out))
                 .map_err(|cause| fault(e, cause))?;
         }

@@ -1,6 +1,6 @@
 //! What is worked out once about the points of a knot span.
 use super::super::kinematics::{V, dot};
-use super::frame::{Components, DOFS, Frame, NODES, Normal, Second, combine, metric};
+use super::frame::{DOFS, Frame, NODES, Normal, Rest, Second, combine, metric};
 use super::plane_stress::Place;
 use covact_geometry::{NurbsPatch, PatchShape};
 
@@ -17,6 +17,7 @@ pub(super) type Turn = [[f64; 3]; 3];
 #[derive(Debug, Clone)]
 pub(super) struct GaussPoint {
     pub n: Second,
+    pub rest: Rest,
     pub place: Place,
     /// Undeformed area.
     pub weight: f64,
@@ -29,8 +30,8 @@ pub(super) struct GaussPoint {
 #[derive(Debug, Clone)]
 pub(super) struct TyingPoint {
     pub n: [[f64; NODES]; 2],
-    /// `A_ij`.
-    pub metric: Components<f64>,
+    /// Undeformed tangents.
+    pub rest: [V<f64>; 2],
     pub turn: Turn,
 }
 
@@ -109,10 +110,16 @@ fn invert(m: &Turn) -> Turn {
 
 impl GaussPoint {
     pub fn new(shapes: &Shapes, x: &[V<f64>; NODES], first: &V<f64>, weight: f64) -> Self {
-        let frame = Frame::new(&shapes.second, x);
+        let p = shapes.second.each_ref().map(|n| combine(n, x));
+        let frame = Frame::new(p);
         let turn = turn(&frame.at, first);
         GaussPoint {
             n: shapes.second,
+            rest: Rest {
+                p,
+                n: frame.at.n,
+                area: frame.at.area,
+            },
             place: Place {
                 metric: metric(&frame.at.r),
                 curvature: frame.h,
@@ -130,7 +137,7 @@ impl TyingPoint {
         let at = Normal::new([combine(&n[0], x), combine(&n[1], x)]);
         TyingPoint {
             n,
-            metric: metric(&at.r),
+            rest: at.r,
             turn: turn(&at, first),
         }
     }

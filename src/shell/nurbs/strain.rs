@@ -2,7 +2,7 @@
 //! one for each part of one that a trim cuts.
 use super::super::error::FaultCause;
 use super::super::kinematics::V;
-use super::frame::{Components, Frame, NODES, Normal, combine, metric};
+use super::frame::{Components, Frame, NODES, Normal, combine, membrane, moved};
 use super::plane_stress::{PlaneStress, Resultants};
 use super::point::{ASSUMED, PLAIN, Turn};
 use super::{NurbsBlock, borders};
@@ -16,8 +16,8 @@ pub(super) struct Strains<D> {
     pub tangents: [[V<D>; 2]; ASSUMED],
     /// Membrane strains, assumed where they are, and curvatures at the Gauss points.
     pub strains: [[D; 6]; PLAIN],
-    /// At the points of borders.
-    pub x: [V<D>; NODES],
+    /// Displacements of the control points.
+    pub u: [V<D>; NODES],
 }
 
 /// How an assumed strain mixes those of the points: `back_g (sum_c (L_c(g) - mean L_c) T_c eps_c + sum_h part_h T_h eps_h)`.
@@ -58,16 +58,9 @@ fn transposed<D: DualNum<f64> + Copy>(m: &Turn, e: &Components<D>) -> Components
     [0, 1, 2].map(|j| e[0] * m[0][j] + e[1] * m[1][j] + e[2] * m[2][j])
 }
 
-/// `eps_ij = (a_ij - A_ij) / 2`, the shear twice.
-#[inline(always)]
-fn membrane<D: DualNum<f64> + Copy>(r: &[V<D>; 2], big: &Components<f64>) -> Components<D> {
-    let a = metric(r);
-    [(a[0] - big[0]) * 0.5, (a[1] - big[1]) * 0.5, a[2] - big[2]]
-}
-
 impl<D: DualNum<f64> + Copy> Strains<D> {
     #[inline(always)]
-    pub fn new(block: &NurbsBlock, group: usize, x: &[V<D>; NODES]) -> Self {
+    pub fn new(block: &NurbsBlock, group: usize, u: &[V<D>; NODES]) -> Self {
         let zero = [D::zero(); 3];
         let still = Frame {
             at: Normal {
@@ -83,16 +76,14 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
             frames: [still; PLAIN],
             tangents: [[zero; 2]; ASSUMED],
             strains: [[D::zero(); 6]; PLAIN],
-            x: *x,
+            u: *u,
         };
         for (g, p) in block.gauss(group).iter().enumerate() {
-            let frame = Frame::new(&p.n, x);
-            let eps = membrane(&frame.at.r, &p.place.metric);
-            for i in 0..3 {
-                let bend = if i == 2 { 2.0 } else { 1.0 };
-                out.strains[g][i] = eps[i];
-                out.strains[g][3 + i] = (-frame.h[i] + p.place.curvature[i]) * bend;
-            }
+            let own = p.n.each_ref().map(|n| combine(n, u));
+            let frame = Frame::new(std::array::from_fn(|k| moved(&p.rest.p[k], &own[k])));
+            let eps = membrane([&p.rest.p[0], &p.rest.p[1]], &[own[0], own[1]]);
+            out.strains[g][..3].copy_from_slice(&eps);
+            out.strains[g][3..].copy_from_slice(&p.rest.bending(&frame, &own));
             out.frames[g] = frame;
         }
         out.assume(block, group);
@@ -109,8 +100,9 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
         let points = block.gauss(group);
         let mut tied = [[D::zero(); 3]; ASSUMED];
         for (c, tie) in ties.iter().enumerate() {
-            self.tangents[c] = tie.n.each_ref().map(|n| combine(n, &self.x));
-            tied[c] = apply(&tie.turn, &membrane(&self.tangents[c], &tie.metric));
+            let own = tie.n.each_ref().map(|n| combine(n, &self.u));
+            self.tangents[c] = [0, 1].map(|i| moved(&tie.rest[i], &own[i]));
+            tied[c] = apply(&tie.turn, &membrane([&tie.rest[0], &tie.rest[1]], &own));
         }
         let mut mean = [D::zero(); 3];
         for (g, p) in points.iter().enumerate() {
@@ -166,6 +158,12 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
         (own, tied)
     }
 
+    /// Deformed control points.
+    pub fn positions(&self, block: &NurbsBlock, group: usize) -> [V<D>; NODES] {
+        let reference = &block.reference[block.element_of(group)];
+        std::array::from_fn(|a| moved(&reference[a], &self.u[a]))
+    }
+
     /// Energy and forces.
     pub fn forces<L: PlaneStress>(
         &self,
@@ -207,7 +205,10 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
             press([&tie.n[0], &tie.n[1]], &self.tangents[c], &tied[c]);
         }
         for held in block.held_in(group) {
-            energy += borders::forces(held, &self.x, &mut f);
+            energy += borders::forces(held, &self.positions(block, group), &mut f);
+        }
+        for tether in block.tethers_in(group) {
+            energy += tether.forces(&self.u, &mut f);
         }
         Ok((energy, f))
     }

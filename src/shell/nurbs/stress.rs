@@ -32,13 +32,12 @@ impl NurbsBlock {
         u: &[Vec3; NODES],
     ) -> Result<SheetResultants, ElementFault> {
         let u: [V<f64>; NODES] = u.map(Into::into);
-        let x = self.positions(e, &u);
         let groups = self.groups_of(e);
         let points = groups.clone().flat_map(|group| self.gauss(group));
         let area: f64 = points.map(|p| p.weight).sum();
         let mut out = SheetResultants::default();
         for group in groups {
-            let strains = Strains::new(self, group, &x);
+            let strains = Strains::new(self, group, &u);
             with_sheet!(&self.plane, law => self.mean(group, &strains, law, area, &mut out))
                 .map_err(|cause| fault(e, cause))?;
         }
@@ -116,7 +115,7 @@ impl NurbsBlock {
         }
         let u: [V<f64>; NODES] = u.map(Into::into);
         let group = self.groups_of(e).start;
-        let strains = Strains::new(self, group, &self.positions(e, &u));
+        let strains = Strains::new(self, group, &u);
         let points = with_sheet!(&self.plane, law => self.at_points(group, &strains, law))
             .map_err(|cause| fault(e, cause))?;
         let side = if self.per == PLAIN { 4 } else { 3 };

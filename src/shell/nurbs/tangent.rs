@@ -123,7 +123,11 @@ pub(super) fn linearize<L: PlaneStress>(
         }
     }
     for held in block.held_in(group) {
-        *energy += borders::linearize(held, &at.x, f, &mut k[..]);
+        let x = at.positions(block, group);
+        *energy += borders::linearize(held, &x, f, &mut k[..]);
+    }
+    for tether in block.tethers_in(group) {
+        *energy += tether.linearize(&at.u, f, &mut k[..]);
     }
     // Blocks on the diagonal are symmetric; what is above it is complete.
     for column in 0..DOFS {

@@ -133,6 +133,70 @@ fn derivatives_against_dual_numbers() {
     }
 }
 
+/// A curved patch of which a trim leaves a whole element and a hundredth of the sides of its neighbours.
+fn slivers() -> NurbsSheet {
+    let corners = [[0.0, 0.0], [0.41, 0.0], [0.41, 0.41], [0.0, 0.41]];
+    let line = |k: usize| {
+        let [a, b] = [corners[k], corners[(k + 1) % 4]];
+        let points = [a, b].map(|[x, y]| [x, y, 0.0, 1.0]).to_vec();
+        let basis = Basis::new(1, vec![0.0, 0.0, 1.0, 1.0], 2).unwrap();
+        TrimCurve {
+            parameter: NurbsCurve::from_homogeneous(basis, points).unwrap(),
+            space: None,
+            entity: 0,
+        }
+    };
+    let curves = (0..4).map(line).collect();
+    let trim = Trim::new(vec![TrimLoop { curves }], [[0.0, 1.0]; 2], 1e-9).unwrap();
+    let patch = patch(1.0).with_trim(Some(trim));
+    NurbsSheet::new(&patch, 0.08, Fineness::Elements([2, 2]), true).unwrap()
+}
+
+/// Control points of which next to nothing is left are held to their neighbours: tangents with what holds them are consistent, each
+/// has a stiffness, and a rotation by 70 degrees is as free of force as without.
+#[test]
+fn loose_points_follow_their_neighbours() {
+    let block = NurbsBlock::new(&slivers(), laws()[0]).unwrap();
+    // The outermost row and column, whose shape functions are cubes of the part that is left.
+    assert_eq!(block.tethers.len(), 9);
+    let turn = Rotation3::new(Vec3::new(0.3, -0.7, 0.5).normalize() * 70f64.to_radians());
+    let bending = block.bending();
+    let mut system = NurbsSystem::default();
+    for tether in &block.tethers {
+        let e = tether.element as usize;
+        let u = block.reference[e].map(|x| {
+            let x = Vec3::from(x);
+            turn * x - x + Vec3::new(3.0, 1.0, -2.0)
+        });
+        let turned = u.map(Into::into);
+        assert!(tether.forces(&turned, &mut [[0.0; 3]; NODES]) < 1e-20 * bending);
+        let mut f = [0.0; DOFS];
+        block.residual(e, &u, &mut f).unwrap();
+        assert!(f.iter().all(|f| f.abs() < 1e-11), "{f:?}");
+        let u = moved(0.06);
+        block.evaluate(e, &u.map(Vec3::from), &mut system).unwrap();
+        let mut f = [[0.0; 3]; NODES];
+        let energy = tether.forces(&u, &mut f);
+        let largest = f
+            .as_flattened()
+            .iter()
+            .fold(0.0, |m: f64, f| m.max(f.abs()));
+        assert!(energy > 1e-9 * bending && largest > 1e-8 * bending);
+        for dof in 0..DOFS {
+            let mut dual_f = [[Dual64::from(0.0); 3]; NODES];
+            let dual_energy = tether.forces(&dual(&u, dof), &mut dual_f);
+            assert!((dual_energy.eps - f[dof / 3][dof % 3]).abs() < 1e-13 * largest);
+            assert!(system.k[DOFS * dof + dof] > 0.0, "{e} {dof}");
+            let mut k = vec![0.0; DOFS * DOFS];
+            tether.linearize(&u, &mut [0.0; DOFS], &mut k);
+            for row in 0..=dof {
+                let exact = dual_f[row / 3][row % 3].eps;
+                assert!((exact - k[DOFS * dof + row]).abs() < 1e-12 * largest / 0.06);
+            }
+        }
+    }
+}
+
 /// Stiffness of a whole sheet at rest.
 fn stiffness(block: &NurbsBlock, mesh: &Mesh) -> DMatrix<f64> {
     let n = 3 * mesh.nodes.len();

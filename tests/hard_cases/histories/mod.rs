@@ -94,6 +94,7 @@ histories!(
     sandwiched_shell,
     sheet_in_die,
     sheet_over_hills,
+    snap_clip_nurbs,
     strip_drawn,
     strip_over_cylinder,
     tubes_crossed_nurbs,

@@ -119,6 +119,14 @@ pub fn sheet_over_hills(scene: &mut Value) {
     end(scene, 1.6);
 }
 
+/// Coarser, and until both bumps have met.
+pub fn snap_clip_nurbs(scene: &mut Value) {
+    for body in ["hook", "catch"] {
+        set(scene, &format!("/bodies/{body}/nurbs/size"), 3);
+    }
+    end(scene, 0.5);
+}
+
 /// Coarser, and pressed a little.
 pub fn folded_panel(scene: &mut Value) {
     set(scene, "/bodies/panel/nurbs/size", 6);

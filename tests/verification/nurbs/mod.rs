@@ -11,6 +11,7 @@ mod panel;
 mod refusals;
 mod scenes;
 mod seams;
+mod self_contact;
 mod trim_masters;
 mod trim_seams;
 mod trim_supports;

@@ -145,3 +145,36 @@ fn a_tube_of_rubber_under_pressure() {
     );
     assert!(off(found, s) < 1e-3, "{found}");
 }
+
+/// A sheet that is moved by its edge and by nothing else has no forces but rounding: it goes as far as its edge, curved and away from
+/// the origin as it is, and no step is cut or tried twice.
+#[test]
+fn a_sheet_follows_its_edge() {
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 2000, "nu": 0.35}}},
+        "bodies": {"sheet": {
+            "nurbs": {"file": "face.json", "thickness": 0.5, "elements": [12, 3]},
+            "material": "m",
+            "placement": {"axis": [0.3, 1, 0], "angle": 50, "translation": [52, -7, 3.2]}
+        }},
+        "supports": {"push": {"on": "sheet.edge.1", "clamped": true, "displacement": {"x": "-16*t"}}},
+        "probes": {"tip": {"on": "sheet.edge.2", "quantity": "displacement"}},
+        "solution": {"step": {"initial": 0.1, "max": 0.5}},
+        "output": {"every": 0}
+    });
+    let patch = Patch::cylinder(10.0, [0.0, 2.0], 4.0);
+    let outcome = solve_sheet(&patch, &scene);
+    assert_eq!(
+        outcome.summary.status.name(),
+        "done",
+        "{:?}",
+        outcome.summary.reason
+    );
+    let most = |name: &str| outcome.column(name).into_iter().fold(0.0, f64::max);
+    let [cuts, failed] = ["cuts", "iterations.failed"].map(most);
+    println!("{cuts} {failed} {}", outcome.at("probe.tip.x", 1.0));
+    assert!(cuts == 0.0 && failed == 0.0, "{cuts} {failed}");
+    assert!((outcome.at("probe.tip.x", 1.0) + 16.0).abs() < 1e-9);
+    assert!(most("energy.internal") < 1e-16);
+}

@@ -341,16 +341,7 @@ fn contacts_that_are_not_there_yet() {
         problems(&contact(good.clone()), &plate()),
         Vec::<String>::new()
     );
-    let with = |key: &str, value: Value| {
-        let mut changed = good.clone();
-        changed[key] = value;
-        contact(changed)
-    };
     for (scene, words) in [
-        (
-            with("master", json!("sheet.bottom")),
-            ["/contacts/c/master", "masters on the same body"],
-        ),
         (
             contact(json!({"slave": "block.top", "master": "sheet.bottom", "passes": "edges"})),
             ["/contacts/c/passes", "two passes"],

@@ -100,6 +100,42 @@ fn discs_are_clamped_and_hinged_at_their_trim() {
     }
 }
 
+/// Rims that just reach into elements: of seven elements along a side of 1.2 three corners are inside by 4e-4 of the radius, so
+/// that shape functions of the points beyond are 1e-15 at most over what is kept. One step at default tolerances;
+/// and with a tenth of the thickness the relative deflection is the same within the error of the mesh.
+#[test]
+fn discs_whose_rims_just_reach_into_elements() {
+    for (side, elements, limits) in [
+        (1.2, 7, [2.5e-3, 2e-4]),
+        (1.2, 10, [5e-4, 5e-5]),
+        (1.163, 8, [2e-3, 1e-4]),
+        (1.117, 9, [1e-3, 1e-4]),
+    ] {
+        for (rim, factor, limit) in [
+            (json!({"clamped": true}), 1.0, limits[0]),
+            (
+                json!({"displacement": {"z": 0}}),
+                (5.0 + NU) / (1.0 + NU),
+                limits[1],
+            ),
+        ] {
+            let [thick, thin] = [0.02, 0.002].map(|t: f64| {
+                let stiffness = E * t.powi(3) / (12.0 * (1.0 - NU * NU));
+                let q = 64.0 * stiffness * 1e-3 * t;
+                let load = json!({"on": "plate.top", "traction": [0, 0, -q]});
+                let [w, _] = deflection(side, elements, t, &rim, load, [1.0, 1e-8]);
+                -w / (1e-3 * t * factor)
+            });
+            println!("{side} {elements} {rim}: {thick} {thin}");
+            assert!(off(thick, 1.0) < limit, "{side} {elements}: {thick}");
+            assert!(
+                off(thin, thick) < limit,
+                "{side} {elements}: {thin} {thick}"
+            );
+        }
+    }
+}
+
 /// A couple along the rim of a hinged disc bends it to a paraboloid, which cubics have.
 #[test]
 fn a_couple_along_a_trim() {

@@ -101,15 +101,15 @@ impl Builder<'_> {
         }
         // As far as a point may sink in, through the wall and one more face.
         let distance = 2.0 * master.depth + master.element_size + contact.offset;
-        master.own = Some(OwnFacets::new(
-            &body.mesh,
-            body.first_node,
-            points,
-            slave,
-            faces,
-            &master.facets,
-            distance,
-        ));
+        let (mesh, first) = (&body.mesh, body.first_node);
+        let facets = &master.facets;
+        let sheet = body.block.sheet().is_some();
+        master.own = Some(if sheet {
+            let parts = (mesh, body.block.seams());
+            OwnFacets::of_sheet(parts, first, points, &self.levers, facets, distance)
+        } else {
+            OwnFacets::new(mesh, first, points, slave, faces, facets, distance)
+        });
         self.notes.push(format!(
             "contact `{name}`: self contact of body `{}`; what is nearer than {} along its undeformed mesh is left out, \
              and faces whose normals do not oppose each other",
