@@ -291,3 +291,39 @@ fn steps_before_a_raise_at_the_last_one_are_told() {
     assert!(off > 0.05, "{off}");
     assert_eq!((told(&ruled), told(&given)), (1, 0));
 }
+
+/// A thin rubber sheet bends under next to nothing, and its penalty starts soft. Under a vacuum it would sink into its tool by its
+/// whole thickness in the first step: it starts where the pressure of that step, .01, sinks in by a tenth of the thickness.
+#[test]
+fn a_sheet_under_pressure_starts_as_stiff_as_its_pressure_asks_for() {
+    let sheet = |loads: Value| {
+        let scene = json!({
+            "covact": 1,
+            "materials": { "rubber": { "neo_hooke": { "E": 3, "nu": 0.45 } } },
+            "bodies": { "sheet": {
+                "mesh": { "plate": { "size": [32, 32], "thickness": 1, "elements": [8, 8], "origin": [0, 0, 0.6] } },
+                "material": "rubber"
+            } },
+            "surfaces": { "mould": { "cylinder": {
+                "radius": 12, "length": 60, "center": [0, 16, -12], "axis": [0, 1, 0]
+            } } },
+            "contacts": { "c": { "slave": "sheet.bottom", "master": "mould" } },
+            "supports": {
+                "a": { "on": "sheet.x_min", "symmetry": "x" }, "b": { "on": "sheet", "plane_strain": "y" }
+            },
+            "loads": loads,
+            "output": { "every": 0 }
+        });
+        let loaded = covact::scene::parse(&scene.to_string(), "sheet.json").expect("a scene");
+        let model = covact::model::build::build(&loaded).expect("a model");
+        (model.pairs[0].eps_n, scene)
+    };
+    let (alone, _) = sheet(json!({}));
+    let (pressed, scene) =
+        sheet(json!({ "v": { "on": "sheet.top", "pressure": ".1*t", "follower": true } }));
+    assert!(alone < 0.01, "{alone}");
+    assert!((pressed - 0.01 / 0.1).abs() < 1e-12, "{pressed}");
+    // It lies around the mould at its end, and what it weighs on it is the pressure on what is above the mould's middle.
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "done");
+}

@@ -15,7 +15,7 @@ use super::nurbs_bodies::sheet_size;
 use crate::contact::points::SlavePoint;
 use crate::machine::memory;
 use crate::mesh::Face;
-use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
+use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points, TIME};
 use penalty::{FaceSize, Suitable};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -186,6 +186,31 @@ impl Builder<'_> {
         Ok((body, faces, points, sampled))
     }
 
+    /// The largest pressure that loads exert on the bodies of a contact at the end of the first step, where it is the same everywhere
+    /// (force / length^2): a penalty under which it sinks in too deep is known to be too soft.
+    fn pressed(&self, bodies: [Option<usize>; 2]) -> f64 {
+        let solution = &self.scene.solution;
+        let step = &solution.step;
+        let first = step.initial.min(step.max).min(solution.end_time);
+        let on = |set: &str| {
+            let name = set.split('.').next().unwrap_or(set);
+            let body = self.body_index.get(name).copied();
+            body.is_some() && bodies.contains(&body)
+        };
+        let loads = self.scene.loads.values();
+        let pressures = loads
+            .filter(|load| load.on.iter().any(|set| on(set)))
+            .filter_map(|load| {
+                load.pressure
+                    .as_ref()?
+                    .compile(&TIME)
+                    .ok()?
+                    .eval(first)
+                    .ok()
+            });
+        pressures.fold(0.0, |most, p| most.max(p.abs()))
+    }
+
     /// A contact pair.
     pub(super) fn pair(
         &mut self,
@@ -259,6 +284,7 @@ impl Builder<'_> {
             Master::Rigid(_) => 0.0,
         };
         let automatic = suits.automatic;
+        let mut by_pressure = false;
         let (eps_n, ruled) = match (contact.penalty, &contact.augmentation) {
             (Penalty::Auto, None) if self.scene.solution.dynamics.is_some() => {
                 (suits.impact(), None)
@@ -275,7 +301,14 @@ impl Builder<'_> {
                     stiffest: suits.stiffest,
                     deepest: suits.deepest,
                 };
-                (suits.start, Some(ruled))
+                let master = match &master {
+                    Master::Body(master) => Some(master.body),
+                    Master::Rigid(_) => None,
+                };
+                let pressed = self.pressed([Some(body), master]) / suits.deepest;
+                by_pressure = pressed > suits.start;
+                let start = suits.start.max(pressed);
+                (start.min(suits.stiffest), Some(ruled))
             }
             (Penalty::Auto, Some(_)) => (automatic, None),
             (Penalty::Value(v), _) => (v, None),
@@ -283,6 +316,10 @@ impl Builder<'_> {
         };
         let (value, auto) = (number(eps_n), number(automatic));
         let how = match contact.penalty {
+            Penalty::Auto if by_pressure => {
+                "a start from the pressure of the first step, ruled by its error from then on"
+                    .to_owned()
+            }
             Penalty::Auto if ruled.is_some() => {
                 format!(
                     "a start from the stiffness of {softer} elements, ruled by its error from then on"
