@@ -199,7 +199,7 @@ impl Builder<'_> {
         };
         let loads = self.scene.loads.values();
         let pressures = loads
-            .filter(|load| load.on.iter().any(|set| on(set)))
+            .filter(|load| load.on.iter().any(&on))
             .filter_map(|load| {
                 load.pressure
                     .as_ref()?

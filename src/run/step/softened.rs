@@ -27,6 +27,13 @@ impl Attempts<'_, '_> {
         let chooses = penalty_rule::rules_all(self.model);
         let mut kept: Option<(State, Vec<f64>)> = None;
         let stages = self.stages(trial)?;
+        // A stage is a start and no more. Those of sheets take long, and end at less; elsewhere that has cost as much as it saved.
+        let sheets = self.model.bodies.iter().any(|b| b.block.sheet().is_some());
+        let patience = if sheets {
+            Patience::Rough
+        } else {
+            Patience::Long
+        };
         for (i, stage) in stages.into_iter().enumerate() {
             let full = stage.into_iter().zip(penalties);
             for (eps, (part, full)) in self.assembler.penalties.iter_mut().zip(full) {
@@ -36,7 +43,7 @@ impl Attempts<'_, '_> {
                 self.restart(end, trial)?;
                 augment::forget(self.model, trial);
             }
-            match self.newton(step, end, trial, Patience::Rough) {
+            match self.newton(step, end, trial, patience) {
                 Ok(converged) => iterations += converged.iterations,
                 Err(failure) => return self.eased(step, end, trial, kept, failure, penalties),
             }
