@@ -11,6 +11,6 @@ pub enum Patience {
     Short,
     /// Use all iterations.
     Long,
-    /// The same, and stop where another solve takes over: at [`ROUGH`] of the forces, whichever points still switch.
+    /// The same, and stop where another solve takes over: at a hundredth of the forces, whichever points still switch.
     Rough,
 }
