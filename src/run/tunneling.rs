@@ -14,6 +14,9 @@ const STRIDE: f64 = 1.0 / 256.0;
 /// that a turning tool passes cuts the corner, by half the angle that the tool has turned.
 const STEEP: f64 = 0.7;
 
+/// Angle by which a tool turns in a step from which on a straight line says nothing of what its surface does to a point near it.
+const TURNED: f64 = 0.1;
+
 /// Fails where a point that touched its master at the start of the step, or was open in front of it, has passed through it: it lies below the
 /// master at the end, deeper than the depth, or its way has led through a rigid surface. Only points that have moved farther
 /// than the depth or than an element, relative to the master, are looked at. A point beyond a free border may go anywhere. Leaves the
@@ -122,7 +125,7 @@ fn farthest(surface: &SurfaceModel, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f
 }
 
 /// Whether the straight path of a point, as a rigid surface sees it, leads through the surface. It is followed by the distance from
-/// the surface, which nothing on the way falls short of.
+/// the surface, which nothing on the way falls short of. Of a tool that turns only what lies deep below it is told.
 fn on_the_way(
     master: &MasterNow,
     (point, touched): (usize, bool),
@@ -133,7 +136,8 @@ fn on_the_way(
     let start = (b * a.inverse_transform_point(&Point3::from(ends[0]))).coords;
     let path = ends[1] - start;
     let length = path.norm();
-    let (mut way, mut outside) = (0.0, true);
+    let turned = a.rotation.angle_to(&b.rotation) > TURNED;
+    let (mut way, mut outside) = (0.0, !turned);
     while way < length {
         let x = start + path * (way / length);
         let Some(seen) = master.see(point, &x, None) else {
@@ -144,7 +148,7 @@ fn on_the_way(
         if seen.behind && !touched || entered && seen.normal.dot(&path) < -STEEP * length {
             return true;
         }
-        outside = seen.signed_distance >= 0.0;
+        outside = !turned && seen.signed_distance >= 0.0;
         way += seen.distance.max(STRIDE * length);
     }
     false
