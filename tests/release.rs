@@ -93,3 +93,24 @@ fn versions_go_together() {
     }
     assert!(read("Cargo.toml").contains(&format!("covact-geometry = {{ version = \"{version}\"")));
 }
+
+/// The package of Python is a workspace of its own: it shares builds with this one only where both leave the same crates unoptimised.
+#[test]
+fn crates_of_the_compiler_are_unoptimised_in_both_workspaces() {
+    let read = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{name}: {e}"))
+    };
+    let unoptimised = |text: &str| -> Vec<String> {
+        let lines = text.lines().filter(|l| l.ends_with(" = { opt-level = 0 }"));
+        lines.map(str::to_owned).collect()
+    };
+    let lock = read("python/Cargo.lock");
+    let mut expected = unoptimised(&read("Cargo.toml"));
+    assert!(expected.len() > 20);
+    expected.retain(|line| {
+        let name = line.split(' ').next().unwrap_or_default();
+        lock.lines().any(|l| l == format!("name = \"{name}\""))
+    });
+    assert_eq!(unoptimised(&read("python/Cargo.toml")), expected);
+}
