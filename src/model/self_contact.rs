@@ -125,14 +125,7 @@ impl OwnFacets {
                 facets_at.entry(n).or_default().push(facet);
             }
         }
-        let mut out = OwnFacets {
-            distance,
-            cell_of: Vec::with_capacity(points.len()),
-            starts: vec![0],
-            facets: Vec::new(),
-            corner_starts: vec![0],
-            corners: Vec::new(),
-        };
+        let mut out = OwnFacets::empty(distance, points.len());
         let mut search = Search::new(mesh.nodes.len());
         let mut last: &[u32] = &[];
         let (mut around, mut near) = (Vec::new(), Vec::new());
@@ -151,13 +144,7 @@ impl OwnFacets {
                 search.run(&graph, around.as_flattened(), distance, |node| {
                     near.extend(facets_at.get(&node).into_iter().flatten());
                 });
-                near.sort_unstable();
-                near.dedup();
-                out.facets.extend_from_slice(&near);
-                out.starts.push(out.facets.len() as u32);
-                let around = around.iter().map(|c| c.map(|n| n + first));
-                out.corners.extend(around);
-                out.corner_starts.push(out.corners.len() as u32);
+                out.push(&mut near, around.iter().map(|c| c.map(|n| n + first)));
             }
             out.cell_of.push(out.starts.len() as u32 - 2);
         }
@@ -182,14 +169,7 @@ impl OwnFacets {
                 facets_at.entry(n - first).or_default().push(facet);
             }
         }
-        let mut out = OwnFacets {
-            distance,
-            cell_of: Vec::with_capacity(points.len()),
-            starts: vec![0],
-            facets: Vec::new(),
-            corner_starts: vec![0],
-            corners: Vec::new(),
-        };
+        let mut out = OwnFacets::empty(distance, points.len());
         let mut search = Search::new(mesh.nodes.len());
         let mut last = None;
         let mut near = Vec::new();
@@ -202,17 +182,34 @@ impl OwnFacets {
                 search.run(&graph, &from, distance, |node| {
                     near.extend(facets_at.get(&node).into_iter().flatten());
                 });
-                near.sort_unstable();
-                near.dedup();
-                out.facets.extend_from_slice(&near);
-                out.starts.push(out.facets.len() as u32);
                 let top = lever.height > 0.0;
-                (out.corners).push(if top { [a, b, c, d] } else { [b, a, d, c] });
-                out.corner_starts.push(out.corners.len() as u32);
+                out.push(&mut near, [if top { [a, b, c, d] } else { [b, a, d, c] }]);
             }
             out.cell_of.push(out.starts.len() as u32 - 2);
         }
         out
+    }
+
+    /// Of no cell yet.
+    fn empty(distance: f64, points: usize) -> Self {
+        OwnFacets {
+            distance,
+            cell_of: Vec::with_capacity(points),
+            starts: vec![0],
+            facets: Vec::new(),
+            corner_starts: vec![0],
+            corners: Vec::new(),
+        }
+    }
+
+    /// One more cell: the facets that are left out for it, in any order, and the corners of the faces around it.
+    fn push(&mut self, near: &mut Vec<u32>, corners: impl IntoIterator<Item = [u32; 4]>) {
+        near.sort_unstable();
+        near.dedup();
+        self.facets.extend_from_slice(near);
+        self.starts.push(self.facets.len() as u32);
+        self.corners.extend(corners);
+        self.corner_starts.push(self.corners.len() as u32);
     }
 
     /// Whether a facet is left out for a point whatever the state.
