@@ -418,6 +418,14 @@ impl PairModel {
         self.edges_of.is_some() || self.half.is_some_and(|half| half.back)
     }
 
+    /// What such a second pair holds: `edges` of the master, or the half pass with the sides `exchanged`.
+    pub fn second_part(&self) -> Option<&'static str> {
+        match self.edges_of {
+            Some(_) => Some("edges"),
+            None => self.is_second().then_some("exchanged"),
+        }
+    }
+
     /// Share of the pair in the energy of its contact: both passes of two are one contact with two sides, whose energy is
     /// the mean of both.
     #[inline]

@@ -28,6 +28,10 @@ pub struct Accuracy {
 pub struct ContactAccuracy {
     /// Name of the contact.
     pub name: String,
+    /// Which part of it, where it has two: none for the slave as the scene has it, `edges` for the edges of the master as slaves,
+    /// `exchanged` for the half pass with its sides exchanged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub part: Option<String>,
     /// Sum of pressure times area (force).
     pub force: f64,
     /// The step in which it acted; 0 without contact.

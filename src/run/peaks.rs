@@ -287,6 +287,7 @@ impl Peaks {
         pairs
             .map(|(index, ((pair, peak), (eps, ratio)))| ContactAccuracy {
                 name: pair.name.clone(),
+                part: pair.second_part().map(str::to_owned),
                 force: peak.force,
                 step: peak.step,
                 active: peak.active,

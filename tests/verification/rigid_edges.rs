@@ -56,6 +56,14 @@ fn an_edge_between_two_nodes_bears_where_it_is() {
             assert!((force + tool).abs() < 1e-9 * force, "{force} {tool}");
             let work = last("energy.internal") + last("energy.contact");
             assert!((work / (0.5 * force * d) - 1.0).abs() < 2e-3, "{work}");
+            // Both parts of the contact have its name in the summary, and say which they are: the edge bears all but a little.
+            let contacts = &outcome.summary.accuracy.contacts;
+            let parts = contacts.iter().map(|c| (&*c.name, c.part.as_deref()));
+            assert_eq!(
+                parts.collect::<Vec<_>>(),
+                [("c", None), ("c", Some("edges"))]
+            );
+            assert!(contacts[1].force > 0.5 * force, "{contacts:?}");
         }
     }
 }
