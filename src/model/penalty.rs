@@ -110,37 +110,26 @@ impl FaceSize {
 /// Relative error of forces that a ruled penalty aims at where the scene asks for none.
 pub const ACCURACY: f64 = 4e-3;
 
-/// As [`ACCURACY`], of contacts that a stage releases. A sheet of metal that sinks into its tool where it lifts off is bent further
-/// than the tool by that, and unloads as it settles: bent further by a hundredth at R/t 50 it loses a twelfth of its springback, and
-/// forces tell little of it.
-pub const RELEASED_ACCURACY: f64 = 1e-4;
-
 /// What a run may choose the penalty of a pair by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ruled {
     /// Relative error of forces that it aims at.
     pub accuracy: f64,
-    /// Penalty above which it aims at no more than [`ACCURACY`] (force / length^3); infinite where the scene says what it aims at.
-    pub rigid: f64,
     /// The stiffest that it may take (force / length^3).
     pub stiffest: f64,
     /// Penetration above which it is raised whatever the error of forces (length).
     pub deepest: f64,
 }
 
-impl Ruled {
-    /// Relative error of forces that it aims at under a penalty.
-    pub fn aim(&self, penalty: f64) -> f64 {
-        match penalty > self.rigid {
-            true => self.accuracy.max(ACCURACY),
-            false => self.accuracy,
-        }
-    }
-}
-
 /// Part of the depth of an element layer, or of its edges where they are shorter, that a point may sink in under a ruled
 /// penalty: the layers of a stack are to stay apart.
 const DEEPEST: f64 = 0.1;
+
+/// As [`DEEPEST`], of contacts that a stage releases, and of the thickness of the body. A sheet of metal that sinks into its tool
+/// where it lifts off is bent further than the tool by that, and unloads as it settles: bent further by a hundredth at R/t 50 it
+/// loses a twelfth of its springback, and forces tell little of it. This much bends a sheet at R/t 5 further by two
+/// ten-thousandths, and any other by less.
+const RELEASED: f64 = 1e-3;
 
 /// Penalties that suit a side of a contact, or both (force / length^3).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,14 +138,12 @@ pub struct Suitable {
     pub automatic: f64,
     /// Where a penalty starts that is ruled by its error.
     pub start: f64,
-    /// That under which a pressure sinks in by [`ACCURACY`] of what it takes from the thickness of the body below. Where a
-    /// clamped sheet is pressed before it bends, next to nothing but that is strained, and any penalty errs beside it; what is bent
-    /// later does not feel it.
-    pub rigid: f64,
     /// What it stays below.
     pub stiffest: f64,
     /// Penetration that is too deep (length).
     pub deepest: f64,
+    /// The same, in contacts that a stage releases (length).
+    pub released: f64,
 }
 
 impl Suitable {
@@ -171,9 +158,9 @@ impl Suitable {
                 true => solid * bending * slender.powi(2),
                 false => solid * compact,
             },
-            rigid: modulus(material) / (ACCURACY * size.thickness),
             stiffest: solid * WARNED / FACTOR,
             deepest: DEEPEST * size.edge.min(size.depth),
+            released: RELEASED * size.thickness,
         }
     }
 
@@ -188,9 +175,9 @@ impl Suitable {
         Suitable {
             automatic: self.automatic.min(other.automatic),
             start: self.start.min(other.start),
-            rigid: self.rigid.min(other.rigid),
             stiffest: self.stiffest.min(other.stiffest),
             deepest: self.deepest.min(other.deepest),
+            released: self.released.min(other.released),
         }
     }
 }

@@ -9,7 +9,6 @@
 //! A raise that Newton's method cannot follow is tried half as far, by its logarithm; one that does not lower the error is taken
 //! back, and not tried again for a while. Where none serves and the error is large, the step is cut a few times; then it is
 //! taken as it is. What error is left is told at the end of the run.
-use crate::model::penalty::ACCURACY;
 use crate::model::{Model, PairModel};
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::run::compliance::Errors;
@@ -148,7 +147,7 @@ impl PenaltyRule {
             let of = |values: &[f64]| values[index].max(values[other]);
             let (error, sunk) = (of(&errors.forces), of(&errors.sunk));
             let rule = &self.pairs[index];
-            let accuracy = ruled.aim(penalties[index]);
+            let accuracy = ruled.accuracy;
             let counts = total > HIGH * accuracy && error >= SHARE * largest;
             let waits = rule.wait > 0 && !again && total <= UNTENABLE * accuracy && sunk <= SUNK;
             if !counts && sunk <= 1.0 || waits {
@@ -158,9 +157,6 @@ impl PenaltyRule {
                 true => two_digits(total / accuracy).clamp(least, most),
                 false => 1.0,
             };
-            // Past a penalty that is rigid for what bends, as far as others go.
-            let usual = two_digits(total / accuracy.max(ACCURACY)).max(1.0);
-            let by_error = by_error.min((ruled.rigid / penalties[index]).max(usual));
             // What is far too soft gives way by as much under a little more.
             let by_depth = match sunk > 1.0 {
                 true => two_digits(DEEPER * sunk),
@@ -214,7 +210,7 @@ impl PenaltyRule {
     pub fn ease(&mut self, model: &Model, penalties: &mut [f64]) -> bool {
         let before = penalties.to_vec();
         for (index, pair) in model.pairs.iter().enumerate() {
-            if let Some(factor) = softer(pair, index, |i| self.pairs[i].last, before[index]) {
+            if let Some(factor) = softer(pair, index, |i| self.pairs[i].last) {
                 set(model, index, before[index] * factor.max(EASE), penalties);
             }
         }
@@ -240,7 +236,7 @@ impl PenaltyRule {
                 (rule.bad, rule.failed) = (f64::INFINITY, 0);
             }
             let of = |i: usize| [errors.forces[i], errors.sunk[i]];
-            let Some(factor) = softer(pair, index, of, penalties[index]) else {
+            let Some(factor) = softer(pair, index, of) else {
                 rule.low = [0; 2];
                 continue;
             };
@@ -263,34 +259,21 @@ impl PenaltyRule {
 /// Factor, at most 1, to a penalty that makes the error asked for, where that of now makes next to none; none where it does, or
 /// where nothing touches and nothing is known. Of two half passes, which have one penalty, the larger error counts, and the
 /// second goes with the first. `of` are error and depth of a pair.
-fn softer(
-    pair: &PairModel,
-    index: usize,
-    of: impl Fn(usize) -> [f64; 2],
-    penalty: f64,
-) -> Option<f64> {
+fn softer(pair: &PairModel, index: usize, of: impl Fn(usize) -> [f64; 2]) -> Option<f64> {
     let ruled = pair.ruled.filter(|_| pair.half.is_none_or(|h| !h.back))?;
     let ([a, b], [c, d]) = (of(index), of(pair.half.map_or(index, |half| half.other)));
     let (error, sunk) = (a.max(c), b.max(d));
-    let aim = ruled.aim(penalty);
-    if error <= 0.0 || error >= LOW * aim {
+    if error <= 0.0 || error >= LOW * ruled.accuracy {
         return None;
     }
-    let factor = two_digits((error / aim).max(sunk));
-    // Below it aims at more.
-    let least = match penalty > ruled.rigid {
-        true => ruled.rigid / penalty,
-        false => 0.0,
-    };
-    Some(factor.max(least).min(1.0))
+    Some(two_digits((error / ruled.accuracy).max(sunk)).min(1.0))
 }
 
 /// Whether a penalty that was softened to get through a step is too soft to be accepted, and the error that it makes. Where
 /// smaller steps have not helped, more is accepted: what is left is told at the end.
-pub fn untenable(model: &Model, penalties: &[f64], errors: &Errors, cuts: u32) -> Option<f64> {
+pub fn untenable(model: &Model, errors: &Errors, cuts: u32) -> Option<f64> {
     let total = errors.sum();
-    let pairs = model.pairs.iter().zip(penalties);
-    let aims = pairs.filter_map(|(p, eps)| Some(p.ruled?.aim(*eps)));
+    let aims = (model.pairs.iter()).filter_map(|p| Some(p.ruled?.accuracy));
     if cuts > 2 * RELENTS {
         return None;
     }
@@ -418,24 +401,6 @@ mod tests {
         assert_eq!(penalties, [1.0, 1.0]);
     }
 
-    /// What a stage releases aims at less than others as long as its penalty is not rigid for what bends.
-    #[test]
-    fn a_clamp_is_not_raised_as_what_bends_is() {
-        let mut model = model();
-        for pair in &mut model.pairs {
-            let ruled = pair.ruled.as_mut().unwrap();
-            (ruled.accuracy, ruled.rigid) = (1e-4, 50.0);
-        }
-        let rule = PenaltyRule::new(&model);
-        let raised = |error, from| raised(&rule, &model, false, error, from);
-        // By a hundred for an error of a hundredth; up to what is rigid; beyond it as far as others go, and as they do.
-        assert_eq!(raised(1e-3, 1.0), 10.0);
-        assert_eq!(raised(0.01, 1.0), 50.0);
-        assert_eq!(raised(0.4, 1.0), 100.0);
-        assert_eq!(raised(1e-3, 60.0), 60.0);
-        assert_eq!(raised(0.02, 60.0), 300.0);
-    }
-
     /// A step that fails softens what is far stiffer than asked for, once, by what its error was at the last accepted step.
     #[test]
     fn a_failed_step_eases_what_is_too_stiff() {
@@ -480,8 +445,7 @@ mod tests {
     #[test]
     fn what_smaller_steps_do_not_help_is_accepted_at_last() {
         let model = model();
-        let told =
-            |error, cuts| untenable(&model, &[1.0, 1.0], &errors([error, 0.0], [0.0; 2]), cuts);
+        let told = |error, cuts| untenable(&model, &errors([error, 0.0], [0.0; 2]), cuts);
         assert_eq!(told(7e-3, 0), None);
         assert_eq!(told(0.02, 0), Some(0.02));
         assert_eq!(told(0.02, 2), None);

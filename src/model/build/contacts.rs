@@ -290,22 +290,20 @@ impl Builder<'_> {
                 (suits.impact(), None)
             }
             (Penalty::Auto, None) => {
-                let (accuracy, rigid) = match contact.accuracy {
-                    Some(given) => (given, f64::INFINITY),
-                    None if self.scene.releases(name) => (penalty::RELEASED_ACCURACY, suits.rigid),
-                    None => (penalty::ACCURACY, f64::INFINITY),
+                let deepest = match self.scene.releases(name) {
+                    true => suits.released.min(suits.deepest),
+                    false => suits.deepest,
                 };
                 let ruled = penalty::Ruled {
-                    accuracy,
-                    rigid,
+                    accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),
                     stiffest: suits.stiffest,
-                    deepest: suits.deepest,
+                    deepest,
                 };
                 let master = match &master {
                     Master::Body(master) => Some(master.body),
                     Master::Rigid(_) => None,
                 };
-                let pressed = self.pressed([Some(body), master]) / suits.deepest;
+                let pressed = self.pressed([Some(body), master]) / deepest;
                 by_pressure = pressed > suits.start;
                 let start = suits.start.max(pressed);
                 (start.min(suits.stiffest), Some(ruled))

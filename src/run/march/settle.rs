@@ -190,8 +190,7 @@ impl<'m> March<'_, 'm> {
             let raise = raises > 0 && self.rule.raise(self.model, &ruling, rejected, &mut stiffer);
             let error = ruling.sum();
             if (converged.eased || rejected && !raise)
-                && let Some(error) =
-                    penalty_rule::untenable(self.model, &self.assembler.penalties, &errors, cuts)
+                && let Some(error) = penalty_rule::untenable(self.model, &errors, cuts)
             {
                 return Ok(Err(StepFailure::TooSoft {
                     error: error.min(1.0),
