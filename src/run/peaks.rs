@@ -238,8 +238,13 @@ impl Peaks {
         let pairs = model.pairs.iter().zip(&self.0);
         let worst = pairs.filter_map(|(pair, p)| Some((pair, p.crests.worst(LARGE * largest)?)));
         let (pair, (what, crest, part)) = worst.max_by(|(_, a), (_, b)| a.2.total_cmp(&b.2))?;
+        let of = match pair.second_part() {
+            None => "",
+            Some("edges") => " at the edges of its master",
+            Some(_) => " in the half pass with its sides exchanged",
+        };
         Some(format!(
-            "contact `{}`: its {what} is largest at step {} (time {}), and changes so much from there to the steps beside it that it \
+            "contact `{}`: its {what}{of} is largest at step {} (time {}), and changes so much from there to the steps beside it that it \
              may have been {:.0} % larger between them: take a smaller `solution.step.max` to see its peak",
             pair.name,
             crest.step,

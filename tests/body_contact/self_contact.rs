@@ -1,5 +1,6 @@
 //! Self contact: a tube is pinched until its walls meet.
 use crate::support::solve;
+use covact::solve::event::Event;
 use serde_json::{Value, json};
 
 /// Radius and thickness of the tube.
@@ -57,4 +58,19 @@ fn the_walls_of_a_pinched_tube_touch_and_nothing_else_does() {
     );
     assert!(push < -0.01 && (push + on("force.ground")).abs() < 1e-6 * push.abs());
     assert!(imbalance < 1e-12);
+}
+
+/// The walls of a tube that is pressed by half its height do not meet: a contact of a body with itself guards against what need not
+/// happen, and the run has reached its end.
+#[test]
+fn walls_that_do_not_meet_end_no_run() {
+    let mut scene = pinched(R, json!("nodes"));
+    scene["supports"]["push"]["displacement"]["z"] = json!("-10*t");
+    scene["solution"]["step"] = json!({"initial": 0.2, "max": 0.2});
+    let outcome = solve(&scene);
+    assert_eq!(outcome.summary.status.name(), "done");
+    assert!(outcome.column("points.active").iter().all(|n| *n == 0.0));
+    assert!(outcome.at("force.push.z", 1.0) < -0.01);
+    let told = |e: &Event| matches!(e, Event::Note { text } if text.contains("contact `walls` never touched"));
+    assert!(outcome.events.iter().any(told));
 }

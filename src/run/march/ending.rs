@@ -55,7 +55,8 @@ impl March<'_, '_> {
             }
             let own = sides(pair);
             let name = pair.name.as_str();
-            let guards = own[0] == own[1] || own.iter().all(|side| met.contains(side));
+            let itself = own[0] == own[1];
+            let guards = itself || !met.is_empty() && own.iter().all(|side| met.contains(side));
             let still = pair.rigid_master().is_some_and(|surface| {
                 let surface = &self.model.surfaces[surface];
                 !surface.motion.moves() && surface.driven.is_none()
@@ -64,7 +65,7 @@ impl March<'_, '_> {
             let part =
                 (pair.rigid_master()).is_some_and(|surface| self.moves_with_one_of(surface, &met));
             let stop = (stop || part) && met.contains(&own[0]);
-            match (guards && !met.is_empty(), stop) {
+            match (guards, stop) {
                 (true, _) => out.1.push((name, false)),
                 (false, true) => out.1.push((name, true)),
                 (false, false) => out.0.push(name),
