@@ -138,12 +138,13 @@ pub fn build_stage(
         notes: builder.notes,
         warnings: builder.warnings,
         kinks: Vec::new(),
+        largest_steps: Vec::new(),
     };
     let first = start.index == 0;
     stages::enter(scene, &mut model, start, u)?;
     model.small = super::small::linearise(scene, &mut model)?;
     model.unsymmetric = symmetry(scene, &mut model)?;
-    model.kinks = values::kinks(scene, &model);
+    values::times(loaded, &mut model);
     values::check(scene, &model)?;
     model.dynamics = super::dynamics::dynamics(scene, &model)?;
     stabilize(scene, &mut model)?;

@@ -40,6 +40,7 @@ pub mod state;
 pub mod stretched;
 pub mod surface;
 pub(crate) mod symmetry;
+pub(crate) mod winding;
 
 use crate::contact::lever::Lever;
 use crate::contact::points::SlavePoint;
@@ -62,6 +63,7 @@ use small::SmallModel;
 use stabilization::StabilizationModel;
 use stages::StageModel;
 use symmetry::Unsymmetric;
+use winding::LargestStep;
 
 pub use effect::EffectKind;
 pub use error::ModelError;
@@ -113,6 +115,8 @@ pub struct Model {
     pub warnings: Vec<String>,
     /// Times at which something prescribed has a kink, ascending.
     pub kinks: Vec<f64>,
+    /// Where steps are smaller for what is prescribed.
+    pub largest_steps: Vec<LargestStep>,
     /// Curves that the scene asks for.
     pub probes: Vec<probe::ProbeModel>,
     /// Which part of the run it is the model of; none where the scene has no stages.

@@ -185,6 +185,15 @@ impl Motion {
         ))
     }
 
+    /// A turn about the axis of the prescribed rotation, in the surface's own coordinates; none where none is prescribed.
+    pub fn turned(&self, degrees: f64) -> Option<Isometry3<f64>> {
+        let turn = self.rotation.as_ref()?;
+        let q = UnitQuaternion::from_axis_angle(&turn.axis, degrees.to_radians());
+        let shift = turn.center - q * turn.center;
+        let turned = Isometry3::from_parts(Translation3::from(shift), q);
+        Some(self.placement.inverse() * turned * self.placement)
+    }
+
     /// Whether a rotation is prescribed.
     pub fn turns(&self) -> bool {
         self.rotation.is_some()

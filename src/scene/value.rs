@@ -287,6 +287,11 @@ impl TimeFunction {
         }
     }
 
+    /// Whether it is an expression, which may have any course between two times.
+    pub fn is_expression(&self) -> bool {
+        matches!(self.form, Form::Expression { .. })
+    }
+
     /// Whether x, y or z occur.
     pub fn depends_on_position(&self) -> bool {
         matches!(&self.form, Form::Expression { program, .. } if (0..3).any(|k| program.uses(k)))

@@ -10,6 +10,8 @@ pub struct Stepping {
     kinks: Vec<f64>,
     /// Kinks and times asked for, ascending.
     stops: Vec<f64>,
+    /// Spans in which no step is larger than a size, and these sizes.
+    bounds: Vec<([f64; 2], f64)>,
     dt: f64,
 }
 
@@ -32,8 +34,15 @@ const LARGE: f64 = 1.0 / 8.0;
 const MOST_CUT: f64 = 1.0 / 64.0;
 
 impl Stepping {
-    /// Steps from 0 to `end` that end on every kink and on every time of `stops`.
-    pub fn new(settings: scene::Step, end: f64, kinks: &[f64], stops: &[f64]) -> Self {
+    /// Steps from 0 to `end` that end on every kink and on every time of `stops`, and are no larger than those of `bounds` within
+    /// their spans.
+    pub fn new(
+        settings: scene::Step,
+        end: f64,
+        kinks: &[f64],
+        stops: &[f64],
+        bounds: Vec<([f64; 2], f64)>,
+    ) -> Self {
         let mut all: Vec<f64> = kinks.iter().chain(stops).copied().collect();
         all.sort_by(f64::total_cmp);
         Stepping {
@@ -41,6 +50,7 @@ impl Stepping {
             end,
             kinks: kinks.to_vec(),
             stops: all,
+            bounds,
             dt: settings.initial.min(settings.max),
         }
     }
@@ -54,7 +64,11 @@ impl Stepping {
             .unwrap_or(self.end)
             .min(self.end);
         let left = target - time;
-        let count = (left / self.dt - 1e-6).ceil().max(1.0);
+        let bounds = self.bounds.iter();
+        let dt = bounds
+            .filter(|([from, to], _)| *from <= time + tiny && time < to - tiny)
+            .fold(self.dt, |dt, (_, size)| dt.min(*size));
+        let count = (left / dt - 1e-6).ceil().max(1.0);
         if count <= 1.0 {
             target
         } else {
@@ -81,6 +95,7 @@ impl Stepping {
             end: _,
             kinks: _,
             stops: _,
+            bounds: _,
             dt,
         } = self;
         *dt
@@ -166,7 +181,7 @@ mod tests {
             max: 0.3,
             adaptive: true,
         };
-        Stepping::new(settings, 1.0, &[], stops)
+        Stepping::new(settings, 1.0, &[], stops, Vec::new())
     }
 
     #[test]
@@ -178,6 +193,19 @@ mod tests {
             assert!(times.len() < 20);
         }
         assert_eq!(times, [0.0, 0.25, 0.5, 0.75, 1.0]);
+    }
+
+    #[test]
+    fn a_span_has_its_own_largest_step() {
+        let mut s = stepping(&[0.5]);
+        s.bounds = vec![([0.5, 1.0], 0.1)];
+        let mut times = vec![0.0];
+        while !s.done(*times.last().unwrap()) {
+            times.push(s.next(*times.last().unwrap()));
+            assert!(times.len() < 20);
+        }
+        assert_eq!(times.len(), 8);
+        assert!((times[3] - 0.6).abs() < 1e-12, "{times:?}");
     }
 
     #[test]

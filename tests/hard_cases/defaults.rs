@@ -483,3 +483,28 @@ fn friction_of_a_contact_that_travels_is_counted() {
     // an element: of a whole number of elements they would see the force, which swings from row to row, at one phase only.
     assert!(taken > 50.0 && lost.abs() < 0.15 * taken);
 }
+
+/// A cam that goes round twice under a cantilever, in a run that has ten steps where nothing goes round: it lifts the beam by 1 at a
+/// distance of 65, under a force of `3 E I w / a^3`. In steps of 23 degrees no peak is missed by more than 2 %.
+#[test]
+fn a_cam_that_goes_round_has_its_peaks() {
+    let cam = done(&json!({
+        "covact": 1,
+        "materials": {"steel": {"st_venant_kirchhoff": {"E": 210_000, "nu": 0}}},
+        "bodies": {"leaf": {
+            "mesh": {"plate": {"size": [80, 10], "thickness": 0.8, "elements": [80, 2], "origin": [0, 0, 0.4]}}, "material": "steel"
+        }},
+        "surfaces": {"cam": {
+            "cylinder": {"radius": 10, "length": 30, "center": [65, 5, -15], "axis": [0, 1, 0]}, "side": "outward",
+            "motion": {"rotation": {"center": [65, 5, -12], "axis": [0, 1, 0], "angle": "720*t"}}
+        }},
+        "contacts": {"c": {"slave": "leaf.bottom", "master": "cam"}},
+        "supports": {"wall": {"on": "leaf.x_min", "fixed": true}},
+        "output": {"every": 0}
+    }));
+    let force = cam.column("force.cam.z");
+    let most = force.iter().fold(0.0f64, |most, f| most.max(f.abs()));
+    let exact = 3.0 * 210e3 * (10.0 * 0.8f64.powi(3) / 12.0) / 65f64.powi(3);
+    println!("{most} of {exact}: {force:?}");
+    assert!((most / exact - 1.0).abs() < 0.03, "{most} {exact}");
+}

@@ -2,7 +2,7 @@
 use super::super::error::At;
 use super::{Model, ModelError, Scene};
 use crate::model::stages;
-use crate::scene::{InitialOverclosure, Stabilization, TimeFunction, ValueError};
+use crate::scene::{InitialOverclosure, LoadedScene, Stabilization, TimeFunction, ValueError};
 use covact_geometry::Vec3;
 use std::collections::BTreeMap;
 
@@ -116,8 +116,14 @@ fn at_point(f: &TimeFunction, x: &Vec3, times: &[f64], end: f64) -> Result<(), V
     }
 }
 
+/// Takes down the kinks of what is prescribed, and how large steps may be between them.
+pub(super) fn times(loaded: &LoadedScene, model: &mut Model) {
+    model.kinks = kinks(&loaded.scene, model);
+    model.bound_steps(loaded);
+}
+
 /// Times inside the run at which something prescribed has a kink.
-pub(super) fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
+fn kinks(scene: &Scene, model: &Model) -> Vec<f64> {
     let end = scene.solution.end_time;
     let shrunk = (scene.contacts.values()).filter_map(|c| match c.initial_overclosure {
         InitialOverclosure::Shrink { until } => Some(until),

@@ -322,6 +322,7 @@ impl StepControl {
                 settings.end_time,
                 &model.kinks,
                 &settings.stops,
+                (model.largest_steps.iter().map(|s| (s.span, s.size))).collect(),
             ),
             before: None,
             habit: Habit::default(),
