@@ -173,12 +173,14 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
                      sides",
                     found.told
                 )),
+                None if found.bow.is_empty() => model.pairs[index].below = found.below,
                 None => {
                     notes.push(format!(
                         "{}; gaps are measured between these, as the points lie at the start",
                         found.told
                     ));
-                    model.pairs[index].bow = found.bow;
+                    let pair = &mut model.pairs[index];
+                    (pair.bow, pair.below) = (found.bow, found.below);
                     gaps.clear();
                     gap = initial_gaps(model, index, &mut gaps)?;
                 }

@@ -59,6 +59,7 @@ use loads::{DeadLoad, FollowerPressure};
 use master::Master;
 use overclosure::Overclosure;
 use rims::RimNodes;
+use sagitta::CurvedMaster;
 use small::SmallModel;
 use stabilization::StabilizationModel;
 use stages::StageModel;
@@ -184,6 +185,8 @@ pub struct PairModel {
     /// Per slave point, its normal coordinate at the start less the gap between the curved surfaces that flat facets stand for
     /// (length); empty where that changes nothing.
     pub bow: Vec<f64>,
+    /// The master of such a pair, where its facets are some of them.
+    pub below: Option<CurvedMaster>,
     /// Distance from the master at which contact begins (length, `>= 0`).
     pub offset: f64,
     /// Multipliers where the scene asks for them.

@@ -5,6 +5,7 @@
 //! of each point at the start is taken out of it for the whole run.
 use super::error::number;
 use super::master::{MasterNow, Masters};
+use super::state::PointState;
 use super::{Model, PairModel};
 use crate::contact::points::SlavePoint;
 use crate::mesh::{Face, Mesh};
@@ -57,6 +58,7 @@ impl Curved {
 }
 
 /// The faces of one side of a pair as parts of curved surfaces.
+#[derive(Debug)]
 struct Surface {
     /// Per face.
     faces: Vec<Curved>,
@@ -171,11 +173,57 @@ pub(super) struct Sides {
     master: Option<Surface>,
 }
 
+/// What is between the curved surfaces at a slave point.
+struct CurvedGap {
+    gap: f64,
+    /// The larger of the distances of both facets from their surfaces there, and how far the master lies outside of its own (length).
+    off: f64,
+    height: f64,
+}
+
+/// The flat faces of a curved master, over which slave points may slide: what they change of a gap belongs to where the point lies.
+#[derive(Debug)]
+pub struct CurvedMaster {
+    surface: Surface,
+    /// Per slave point, how far the master lies outside of its face below the point at the start (length).
+    heights: Vec<f64>,
+    /// Overclosure, or distance of both sides, at the start, on the mean (length).
+    distance: f64,
+}
+
+impl CurvedMaster {
+    /// By how much the flat faces change the gaps of points in contact otherwise than at the start: on their mean, as a part of the
+    /// overclosure or clearance there. `states` are those of the slave points, `faces` tells the face of the master that a patch is of.
+    pub fn slid(
+        &self,
+        points: &[SlavePoint],
+        states: &[PointState],
+        faces: impl Fn(u32) -> u32,
+    ) -> f64 {
+        let (mut area, mut sum) = (0.0, 0.0);
+        for ((point, state), start) in points.iter().zip(states).zip(&self.heights) {
+            let Some(hint) = state.hint.filter(|_| state.closed) else {
+                continue;
+            };
+            let (height, _) = self.surface.faces[faces(hint.patch) as usize].outside(hint.xi);
+            area += point.area;
+            sum += point.area * (height - start).abs();
+        }
+        match area > 0.0 {
+            true => sum / (area * self.distance),
+            false => 0.0,
+        }
+    }
+}
+
 /// What facets change of the overclosure of a pair at the start.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Correction {
-    /// Per slave point: its normal coordinate less the gap between the curved surfaces (length).
+    /// Per slave point: its normal coordinate less the gap between the curved surfaces (length); none where they change less than one
+    /// per cent.
     pub bow: Vec<f64>,
+    /// The master, where its facets change anything.
+    pub below: Option<CurvedMaster>,
     /// What was found, in words.
     pub told: String,
     /// Why the gaps of the pair cannot be corrected, if so.
@@ -200,14 +248,13 @@ impl Sides {
         (slave.is_some() || master.is_some()).then_some(Sides { slave, master })
     }
 
-    /// The gap between the curved surfaces at a slave point, which lies at `x`; none where the master is not found. And the
-    /// larger of the distances of the facets from their surfaces there.
+    /// The gap between the curved surfaces at a slave point, which lies at `x`; none where the master is not found.
     fn gap(
         &self,
         (model, pair): (&Model, &PairModel),
         master: &MasterNow<'_>,
         (i, p, x): (usize, &SlavePoint, &Vec3),
-    ) -> Option<[f64; 2]> {
+    ) -> Option<CurvedGap> {
         let (mut at, mut off) = (*x, 0.0f64);
         if let (Some(slave), 4) = (&self.slave, p.count) {
             let first = model.bodies[pair.body].first_node;
@@ -221,27 +268,28 @@ impl Sides {
             }
         }
         let seen = master.see(i, &at, None)?;
-        let mut gap = seen.gap(pair.offset);
+        let (mut gap, mut height) = (seen.gap(pair.offset), 0.0);
         if let (Some(surface), Some(body)) = (&self.master, pair.body_master())
             && seen.counts()
         {
             let face = body.facets.source(seen.hint.patch) as usize;
             let face = &surface.faces[face];
-            let (height, normal) = face.outside(face.below(seen.hint.xi, seen.signed_distance));
-            gap = seen.signed_distance / normal.dot(&seen.normal) - height - pair.offset;
-            off = off.max(height.abs());
+            let (outside, normal) = face.outside(face.below(seen.hint.xi, seen.signed_distance));
+            gap = seen.signed_distance / normal.dot(&seen.normal) - outside - pair.offset;
+            (off, height) = (off.max(outside.abs()), outside);
         }
-        Some([gap, off])
+        Some(CurvedGap { gap, off, height })
     }
 
     /// What facets change of the overclosure of pair `index`, whose points have these normal coordinates at the start
     /// (not-a-number: none); nothing where it is less than one per cent, or nothing overlaps either way.
-    pub fn correction(&self, model: &Model, index: usize, gaps: &[f64]) -> Option<Correction> {
+    pub fn correction(self, model: &Model, index: usize, gaps: &[f64]) -> Option<Correction> {
         let pair = &model.pairs[index];
         let zero = vec![0.0; 3 * model.nodes.len()];
         let masters = Masters::new(model);
         let master = masters.at(model, index, &zero, 0.0).ok()?;
         let mut bow = Vec::with_capacity(gaps.len());
+        let mut heights = Vec::with_capacity(gaps.len());
         let (mut faceted, mut true_ones, mut area, mut largest) = (0.0, 0.0, 0.0, 0.0f64);
         let mut deepest = 0.0f64;
         let mut beside = Beside::default();
@@ -253,7 +301,11 @@ impl Sides {
                 true => self.gap((model, pair), &master, (i, p, &x)),
                 false => None,
             };
-            let Some([curved, off]) = found else {
+            heights.push(found.as_ref().map_or(0.0, |f| f.height));
+            let Some(CurvedGap {
+                gap: curved, off, ..
+            }) = found
+            else {
                 bow.push(0.0);
                 continue;
             };
@@ -268,9 +320,8 @@ impl Sides {
         }
         let added = faceted - true_ones;
         let overlaps = deepest < -1e-9 * pair.element_size;
-        if overlaps && added.abs() <= COUNTS * true_ones {
-            return None;
-        }
+        // Nothing, as long as the points stay where they are.
+        let nothing = overlaps && added.abs() <= COUNTS * true_ones;
         let all: f64 = pair.points.iter().map(|p| p.area).sum();
         let fits = self.slave.is_some() && self.master.is_some() && beside.counts(all);
         if !overlaps && !fits {
@@ -283,28 +334,47 @@ impl Sides {
             }
             _ => None,
         };
+        let distance = match overlaps {
+            true => true_ones / area,
+            false => beside.distance / beside.area,
+        };
+        let below = (self.master).map(|surface| CurvedMaster {
+            surface,
+            heights,
+            distance,
+        });
+        if nothing {
+            return Some(Correction {
+                bow: Vec::new(),
+                below,
+                told: String::new(),
+                refused: None,
+            });
+        }
         if !overlaps {
             return refused.is_none().then(|| Correction {
                 bow,
+                below,
                 told: format!(
                     "contact `{}`: flat facets stand for curved faces, up to {} off them, where the mean distance of both sides is {} \
                      at the start",
                     pair.name,
                     number(beside.largest),
-                    number(beside.distance / beside.area),
+                    number(distance),
                 ),
                 refused: None,
             });
         }
         Some(Correction {
             bow,
+            below,
             told: format!(
                 "contact `{}`: flat facets stand for curved faces, up to {} off them: they make an overclosure of {} at the \
                  start, on the mean of the points that overlap, which is {} between the curved surfaces",
                 pair.name,
                 number(largest),
                 number(faceted / area),
-                number(true_ones / area),
+                number(distance),
             ),
             refused,
         })

@@ -165,6 +165,7 @@ fn leave_out(model: &mut Model, active: &BTreeSet<&str>) {
         if !active.contains(pair.name.as_str()) {
             pair.points.clear();
             pair.bow.clear();
+            pair.below = None;
             (pair.overclosure, pair.averaged, pair.sampled) = (None, None, Points::Nodes);
         }
         if let Some(averaged) = &mut pair.averaged {

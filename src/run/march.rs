@@ -17,7 +17,7 @@ mod summary;
 mod telling;
 
 pub(super) use giving_up::Patience;
-pub(super) use outcome::{AcceptedStep, Outcome};
+pub(super) use outcome::{AcceptedStep, Ending, Outcome};
 pub(super) use restart::{Kept, KeptFiles, take_variant};
 use settle::Settled;
 pub(super) use start::{Problem, RunState};
@@ -59,32 +59,6 @@ const GIVES_IN: u32 = 4;
 /// edges of rigid surfaces are slaves every step that jumps is cut: a slave that catches on an edge in a large step slides over it in
 /// small ones.
 const JUMPS: u32 = 2;
-
-/// How a run ended.
-#[derive(Debug, Clone)]
-pub(super) struct Ending {
-    pub status: RunStatus,
-    pub reason: Option<String>,
-    /// Numbers of the bodies whose enhanced strains are what the run could not go on with.
-    pub squeezed: Vec<usize>,
-    /// It was given up since edges of masters lie in slaves.
-    pub on_rims: bool,
-    /// It was given up since surfaces sink into the slaves of these pairs, between their points.
-    pub between: Vec<usize>,
-}
-
-impl Ending {
-    /// One that neither elements nor edges account for.
-    pub fn new(status: RunStatus, reason: Option<String>) -> Self {
-        Ending {
-            status,
-            reason,
-            squeezed: Vec::new(),
-            on_rims: false,
-            between: Vec::new(),
-        }
-    }
-}
 
 /// What a caller lends to a run while it goes on.
 pub(super) struct Caller<'a> {
@@ -374,9 +348,9 @@ impl March<'_, '_> {
                         &converged.totals.penetration[..],
                         &outputs.fields.bearings.pairs[..],
                     );
-                    if ending.is_none() {
-                        ending = self.sinks(committed, [start, end], by);
-                    }
+                    let ending = ending
+                        .or_else(|| self.sinks(committed, [start, end], by))
+                        .or_else(|| self.slides(committed));
                     let ending = ending.or_else(|| {
                         let held = walk.jump.map(|jump| self.on_viscous_forces(&jump));
                         done.then(|| held.unwrap_or_else(|| self.ending()))

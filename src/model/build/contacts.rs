@@ -385,6 +385,7 @@ impl Builder<'_> {
             element_size: size.edge,
             overclosure: None,
             bow: Vec::new(),
+            below: None,
             offset: contact.offset + height,
             augmentation,
             averaged,

@@ -1,11 +1,12 @@
 //! When a run is given up, since another one stands ready to take its place.
 use super::{Ending, March};
 use crate::model::edges;
+use crate::model::error::number;
 use crate::model::state::State;
 use crate::output::RunStatus;
 use crate::run::bearing::Bearing;
 use crate::run::progress::Progress;
-use crate::run::unseen::hanging;
+use crate::run::unseen::{hanging, slides};
 
 /// Iterations of failed attempts from which on a run may work in vain: one that another may stand for, and one of which the other is
 /// known to be worse.
@@ -79,6 +80,32 @@ impl March<'_, '_> {
         (on_rims || !between.is_empty()).then(|| Ending {
             on_rims,
             between,
+            ..Ending::new(RunStatus::NotConverged, Some(text.to_owned()))
+        })
+    }
+
+    /// Ends a run in which slave points slide over flat faces of a curved master that may be smooth in another one; of others the
+    /// user is told.
+    pub(super) fn slides(&mut self, state: &State) -> Option<Ending> {
+        let (may, mut slid) = (self.unseen.smooth.clone(), Vec::new());
+        for (index, part) in slides(self.model, state) {
+            let name = &self.model.pairs[index].name;
+            let head = format!(
+                "contact `{name}`: its points slide over flat faces that stand for curved ones"
+            );
+            if may.contains(&index) {
+                slid.push(index);
+            } else if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+                self.warn(format!(
+                    "{head}, by which gaps are {:.0} % of the overclosure or clearance at the start off, at time {}: take a smooth                      master (`\"master_surface\": \"smooth\"`), finer faces, or element `q18`",
+                    100.0 * part,
+                    number(self.progress.time)
+                ));
+            }
+        }
+        let text = "slave points slide over flat faces that stand for curved ones";
+        (!slid.is_empty()).then(|| Ending {
+            slid,
             ..Ending::new(RunStatus::NotConverged, Some(text.to_owned()))
         })
     }

@@ -1,6 +1,7 @@
 //! Beginning again at time 0: which other form of the scene a run that stopped is repeated with, and which one it goes back to where
 //! none of them came to the end.
 use super::changes::Changes;
+use super::smooth::{flat_again, with_smooth_below};
 use super::substitute::instead_of_kept;
 use super::variant::{
     Safe, safe_variant, seeing_less, with_edges, with_exchanged, with_points, with_rims,
@@ -105,11 +106,17 @@ impl Simulation<'_> {
             let found = rims_sunk && (stopped || ending.on_rims);
             found.then(|| with_rims(&self.scene, before, Some(time)))?
         };
-        let points = |before: Option<&Safe>| {
+        let names = |of: &[usize]| -> Vec<&str> {
             let pairs = &self.running.borrow_owner().model.pairs;
-            let names = ending.between.iter().map(|&pair| pairs[pair].name.as_str());
-            with_points(&self.scene, before, Some(time), &names.collect::<Vec<_>>())
+            of.iter().map(|&pair| pairs[pair].name.as_str()).collect()
         };
+        let points = |before: Option<&Safe>| {
+            with_points(&self.scene, before, Some(time), &names(&ending.between))
+        };
+        let below = || with_smooth_below(&self.scene, before, time, &names(&ending.slid));
+        let flat = stopped
+            .then(|| flat_again(&self.scene, before, time))
+            .flatten();
         // What is seen of both in the same step is changed at once.
         let unseen = || {
             let safe = if ending.on_rims { rims() } else { None };
@@ -123,10 +130,12 @@ impl Simulation<'_> {
         let instead = instead.flatten();
         let found = match self.rims {
             rims if kept.is_some() => kept.map(|safe| (safe, rims)),
+            rims if !ending.slid.is_empty() => below().map(|safe| (safe, rims)),
             Rims::Out | Rims::Instead if ending.on_rims || !ending.between.is_empty() => {
                 unseen().map(|safe| (safe, Rims::Instead))
             }
             rims if instead.is_some() => instead.map(|safe| (safe, rims)),
+            rims if flat.is_some() => flat.map(|safe| (safe, rims)),
             Rims::Out => (safe().map(|safe| (safe, Rims::Out)))
                 .or_else(|| Some((rims()?, Rims::Settled)))
                 .or_else(|| Some((contacts()?, Rims::Out))),
@@ -148,6 +157,7 @@ impl Simulation<'_> {
             && kept_none
             && !ending.on_rims
             && ending.between.is_empty()
+            && ending.slid.is_empty()
             && ending.squeezed.is_empty();
         let mut farthest = before.and_then(|safe| safe.farthest.clone());
         let found = found.or_else(|| {

@@ -3,6 +3,7 @@ mod again;
 mod changes;
 mod joined;
 mod read;
+mod smooth;
 mod stages;
 mod stepping;
 mod substitute;
@@ -27,6 +28,7 @@ use crate::solve::event::{Event, Observer, Silent};
 use changes::Changes;
 use joined::with_joined;
 use serde::{Deserialize, Serialize};
+use smooth::smooth_pairs;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use variant::{Safe, edges_may, names_element, points_may, with_exchanged, with_sides};
@@ -221,7 +223,7 @@ impl<'o> Simulation<'o> {
     /// Tells once what is known when a run has ended.
     fn conclude(&mut self) {
         // What is repeated has nothing to say of the answer.
-        let unseen = |e: &Ending| e.on_rims || !e.between.is_empty();
+        let unseen = |e: &Ending| e.on_rims || !e.between.is_empty() || !e.slid.is_empty();
         let settled = matches!(self.rims, Rims::Settled | Rims::Last);
         if !settled && self.ended.as_ref().is_some_and(unseen) {
             return;
@@ -331,8 +333,8 @@ fn running(
         Some(sections) => sections.read_first("variant", |from| Ok(take_variant(from)?.1.0))?,
         None => StageStart::default(),
     };
-    let mut model =
-        model::build::build_stage(loaded, stage, None).map_err(|e| RunError::model(loaded, e))?;
+    let mut model = model::build::build_stage(loaded, stage.clone(), None)
+        .map_err(|e| RunError::model(loaded, e))?;
     model.warnings.extend_from_slice(changed);
     model.notes.extend_from_slice(notes);
     let plan = Plan::new(loaded, &model);
@@ -369,6 +371,10 @@ fn running(
         points: match rims {
             Rims::Settled | Rims::Last => Vec::new(),
             _ => may(points_may),
+        },
+        smooth: match last {
+            true => Vec::new(),
+            false => smooth_pairs(loaded, &model, &stage),
         },
     };
     let block = |name: &str| again::is_block(&model.bodies, name);

@@ -353,7 +353,7 @@ fn with_contacts(
 const STOPPED: &str = "the run stopped";
 
 /// What is told of contacts with which a run stopped.
-fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
+pub(super) fn stopped(contacts: &[String], time: Option<f64>, text: &str) -> String {
     let space = if text.starts_with(';') { "" } else { " " };
     format!(
         "contact {}: {STOPPED}{}{space}{text}",

@@ -4,10 +4,12 @@ mod between;
 mod edges;
 mod hanging;
 mod rims;
+mod slides;
 
 use crate::model::Model;
 pub(in crate::run) use between::Travel;
 pub(in crate::run) use hanging::hanging;
+pub(in crate::run) use slides::slides;
 
 use between::Between;
 use covact_geometry::Vec3;
@@ -21,6 +23,8 @@ pub(in crate::run) struct MaySee {
     pub edges: Vec<usize>,
     /// Those that may have more slave points.
     pub points: Vec<usize>,
+    /// Those whose masters may be smooth surfaces.
+    pub smooth: Vec<usize>,
 }
 
 /// What is looked for in every accepted step.
@@ -31,6 +35,8 @@ pub(in crate::run) struct Unseen {
     pub between: Between,
     /// Pairs that may have more slave points in another variant of the run.
     pub more: Vec<usize>,
+    /// Pairs whose masters may be smooth surfaces in another variant of the run.
+    pub smooth: Vec<usize>,
 }
 
 impl Unseen {
@@ -44,6 +50,7 @@ impl Unseen {
                 true => Vec::new(),
                 false => may.points.clone(),
             },
+            smooth: may.smooth.clone(),
         }
     }
 }
