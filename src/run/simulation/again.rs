@@ -114,7 +114,10 @@ impl Simulation<'_> {
             with_points(&self.scene, before, Some(time), &names(&ending.between))
         };
         let below = || with_smooth_below(&self.scene, before, time, &names(&ending.slid));
-        let flat = stopped
+        // What else was found wrong with it is changed first.
+        let nothing_else =
+            !ending.on_rims && ending.between.is_empty() && ending.squeezed.is_empty();
+        let flat = (stopped && nothing_else)
             .then(|| flat_again(&self.scene, before, time))
             .flatten();
         // What is seen of both in the same step is changed at once.
@@ -153,12 +156,7 @@ impl Simulation<'_> {
             Rims::Last => None,
         };
         // What was given up for what it does not see, or for its elements, is no answer to go back to.
-        let failed = stopped
-            && kept_none
-            && !ending.on_rims
-            && ending.between.is_empty()
-            && ending.slid.is_empty()
-            && ending.squeezed.is_empty();
+        let failed = stopped && kept_none && nothing_else && ending.slid.is_empty();
         let mut farthest = before.and_then(|safe| safe.farthest.clone());
         let found = found.or_else(|| {
             let farthest = farthest.take().filter(|_| stopped)?;
