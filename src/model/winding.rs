@@ -3,6 +3,7 @@
 use super::Model;
 use super::error::number;
 use super::surface::{SurfaceModel, with_patches};
+use crate::contact::closest::ClosestPoint;
 use crate::scene::{LoadedScene, TimeFunction};
 use covact_geometry::{Surface, Vec3};
 
@@ -32,8 +33,7 @@ pub struct LargestStep {
 /// What goes its way over time: a value, or a point of a surface.
 type Way<'m> = Box<dyn Fn(f64) -> Option<Vec3> + 'm>;
 
-/// Where steps have to be smaller than `max`, of a run until `end`; nothing where what is prescribed goes in straight lines, and in
-/// motion, whose steps follow their own error.
+/// Where steps have to be smaller than `max`, of a run until `end`; nothing where what is prescribed goes in straight lines.
 pub fn largest_steps(model: &Model, end: f64, max: f64) -> Vec<LargestStep> {
     let expressions: Vec<(&TimeFunction, Vec3)> = (model.functions())
         .filter(|(f, _)| f.is_expression())
@@ -59,7 +59,7 @@ pub fn largest_steps(model: &Model, end: f64, max: f64) -> Vec<LargestStep> {
             })
         }));
     }
-    if ways.is_empty() || model.dynamics.is_some() || end.is_nan() || end <= 0.0 {
+    if ways.is_empty() || end.is_nan() || end <= 0.0 {
         return Vec::new();
     }
     let mut ends: Vec<f64> = (model.kinks.iter().copied())
@@ -163,7 +163,7 @@ fn turned_points(surface: &SurfaceModel, end: f64) -> Vec<Vec3> {
     let size = points.iter().map(longest).fold(0.0, f64::max);
     let off = |x: &Vec3| {
         let x = turn.transform_point(&(*x).into()).coords;
-        let foot = crate::contact::closest::ClosestPoint::project(&surface.set, &x, None, size);
+        let foot = surface.set.project(&x, None, size);
         foot.is_none_or(|foot| foot.distance > OFF * size)
     };
     let angles = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| motion.turn(0.0, part * end));
@@ -175,11 +175,12 @@ fn turned_points(surface: &SurfaceModel, end: f64) -> Vec<Vec3> {
 }
 
 impl Model {
-    /// Takes down how large steps may be beside what is prescribed, unless the scene says how large they are.
+    /// Takes down how large steps may be beside what is prescribed, unless the scene says how large they are. With inertia steps follow
+    /// their own error.
     pub(super) fn bound_steps(&mut self, loaded: &LoadedScene) {
         let solution = &loaded.scene.solution;
         let given = |key: &str| loaded.has(&format!("/solution/step/{key}"));
-        if given("max") || !solution.step.adaptive {
+        if given("max") || !solution.step.adaptive || solution.dynamics.is_some() {
             return;
         }
         self.largest_steps = largest_steps(self, solution.end_time, solution.steps(given).max);
@@ -247,5 +248,26 @@ mod tests {
         assert!(of(json!("0.1*t")).is_empty() && of(json!("0.1*t^2")).is_empty());
         assert!(of(json!({"table": [[0, 0], [0.1, 0.2], [0.2, 0], [1, 0]]})).is_empty());
         assert!(of(json!("min(0.1, max(0, 1e9*(t-0.37)))")).is_empty());
+    }
+
+    /// Steps with inertia follow their own error, and those that a scene gives are what it says.
+    #[test]
+    fn steps_that_are_ruled_otherwise_are_left_alone() {
+        let bounded = |solution: Value| {
+            let scene = json!({
+                "covact": 1,
+                "materials": {"m": {"neo_hooke": {"E": 1, "nu": 0.3, "density": 1}}},
+                "bodies": {"b": {
+                    "mesh": {"block": {"min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1]}}, "material": "m"
+                }},
+                "supports": {"below": {"on": "b.bottom", "displacement": {"x": "0.1*sin(20*t)", "y": 0, "z": 0}}},
+                "solution": solution
+            });
+            let loaded = scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+            !build(&loaded).expect("a model").largest_steps.is_empty()
+        };
+        assert!(bounded(json!({})));
+        assert!(!bounded(json!({"dynamics": {}})));
+        assert!(!bounded(json!({"step": {"max": 0.1}})));
     }
 }

@@ -87,17 +87,18 @@ impl March<'_, '_> {
     /// Ends a run in which slave points slide over flat faces of a curved master that may be smooth in another one; of others the
     /// user is told.
     pub(super) fn slides(&mut self, state: &State) -> Option<Ending> {
-        let (may, mut slid) = (self.unseen.smooth.clone(), Vec::new());
-        for (index, part) in slides(self.model, state) {
+        let may = |(index, _): &(usize, f64)| self.unseen.smooth.contains(index);
+        let found = slides(self.model, state);
+        let (slid, told): (Vec<_>, Vec<_>) = found.into_iter().partition(may);
+        for (index, part) in told {
             let name = &self.model.pairs[index].name;
             let head = format!(
                 "contact `{name}`: its points slide over flat faces that stand for curved ones"
             );
-            if may.contains(&index) {
-                slid.push(index);
-            } else if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
+            if !self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
                 self.warn(format!(
-                    "{head}, by which gaps are {:.0} % of the overclosure or clearance at the start off, at time {}: take a smooth                      master (`\"master_surface\": \"smooth\"`), finer faces, or element `q18`",
+                    "{head}, by which gaps are {:.0} % of the overclosure or clearance at the start off, at time {}: take a smooth \
+                     master (`\"master_surface\": \"smooth\"`), finer faces, or element `q18`",
                     100.0 * part,
                     number(self.progress.time)
                 ));
@@ -105,7 +106,7 @@ impl March<'_, '_> {
         }
         let text = "slave points slide over flat faces that stand for curved ones";
         (!slid.is_empty()).then(|| Ending {
-            slid,
+            slid: slid.into_iter().map(|(index, _)| index).collect(),
             ..Ending::new(RunStatus::NotConverged, Some(text.to_owned()))
         })
     }
