@@ -344,7 +344,7 @@ impl Sides {
             distance,
         });
         if nothing {
-            return Some(Correction {
+            return refused.is_none().then(|| Correction {
                 bow: Vec::new(),
                 below,
                 told: String::new(),
