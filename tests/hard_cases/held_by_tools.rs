@@ -187,3 +187,73 @@ fn a_flange_that_is_wiped_lies_on_the_edge_of_its_die() {
     assert!((x / 57.3 - 1.0).abs() < 0.05 && (z / 175.2 - 1.0).abs() < 0.05);
     assert!(found.summary.given_up.runs > 0);
 }
+
+/// Two rubber fingers close on a block and lift it off a table, which comes to rest while the block is carried on: nothing but friction
+/// holds the block then, and the residuals of the table go down with every iteration until they underflow.
+///
+/// Closed form: the supports of the fingers carry the weight of the block, 20^3 x 2e-9 x 9810.
+#[test]
+fn a_block_is_lifted_by_two_fingers_off_a_table_that_comes_to_rest() {
+    let finger = |x: f64| {
+        json!({
+            "mesh": { "block": { "size": [6, 10, 20], "elements": [3, 3, 5], "origin": [x, -5, 5.6] } },
+            "material": "rubber"
+        })
+    };
+    let way = |x: f64| {
+        let closing = json!({ "table": [[0, 0], [1, x]] });
+        let lifting = json!({ "table": [[0, 0], [1, 0], [3, 24]] });
+        json!([closing, 0, lifting])
+    };
+    let outcome = solve(&json!({
+        "covact": 1,
+        "materials": {
+            "rubber": { "neo_hooke": { "E": 2, "nu": 0.45 } },
+            "light": { "neo_hooke": { "E": 50, "nu": 0.35, "density": 2e-9 } },
+            "hard": { "neo_hooke": { "E": 500, "nu": 0.3 } }
+        },
+        "bodies": {
+            "left": finger(-16.3),
+            "right": finger(10.3),
+            "block": {
+                "mesh": { "block": { "size": [20, 20, 20], "elements": [4, 4, 4], "origin": [-10, -10, 0] } },
+                "material": "light"
+            },
+            "table": {
+                "mesh": { "block": { "size": [40, 40, 5], "elements": [5, 5, 1], "origin": [-20, -20, -5] } },
+                "material": "hard"
+            }
+        },
+        "contacts": {
+            "a": { "slave": "left.x_max", "master": "block.x_min", "friction": 0.6 },
+            "c": { "slave": "right.x_min", "master": "block.x_max", "friction": 0.6 },
+            "t": { "slave": "block.bottom", "master": "table.top", "friction": 0.3 }
+        },
+        "supports": {
+            "floor": { "on": "table.bottom", "fixed": true },
+            "left": { "on": "left.x_min", "displacement": way(1.0) },
+            "right": { "on": "right.x_max", "displacement": way(-1.0) }
+        },
+        "loads": { "weight": { "on": "block", "gravity": [0, 0, { "table": [[0, 0], [1, -9810]] }] } },
+        "solution": { "end_time": 3 },
+        "output": { "every": 0 }
+    }));
+    let summary = &outcome.summary;
+    assert_eq!(summary.status, RunStatus::Done);
+    assert!(!format!("{:?}", summary.warnings).contains("rests on the stabilization"));
+    let [left, right] = ["force.left.z", "force.right.z"].map(|name| outcome.column(name));
+    let weight = 8000.0 * 2e-9 * 9810.0;
+    let lifted = outcome
+        .column("time")
+        .into_iter()
+        .zip(left.iter().zip(&right));
+    for (time, (left, right)) in lifted.filter(|(time, _)| *time > 1.2) {
+        let carried = left + right;
+        assert!(
+            (carried / weight - 1.0).abs() < 0.01,
+            "{time}: {carried}, {weight}"
+        );
+    }
+    let iterations = summary.newton_iterations;
+    assert!(iterations < 600, "{iterations}");
+}

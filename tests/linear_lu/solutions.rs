@@ -268,3 +268,32 @@ fn right_hand_sides_one_after_the_other() {
         assert!(difference(&x, expected.as_slice()) < 1e-9);
     }
 }
+
+/// A part that has come to rest has residuals that are squared with every iteration, until they underflow: what is left of their
+/// digits says nothing of the solution, in the other part nor in this one.
+#[test]
+fn a_part_at_rest_leaves_the_other_one_accurate() {
+    let elements: [[u32; 8]; 2] =
+        std::array::from_fn(|e| std::array::from_fn(|a| (8 * e + a) as u32));
+    let pattern = Pattern::new(16, elements.iter().map(|e| &e[..])).unwrap();
+    let mut random = Random(11);
+    let matrix = assembled(&Arc::new(pattern), &elements, |ke| {
+        for (i, k) in ke.iter_mut().enumerate() {
+            *k = random.next() + if i % 25 == 0 { 12.0 } else { 0.0 };
+        }
+    });
+    let (mut solver, _) = factorized(&matrix, OrderingChoice::Amd);
+    for small in [1e-290, 1e-318, 1e-322] {
+        let mut rhs = random.vector(48);
+        rhs[24..].iter_mut().for_each(|b| *b *= small);
+        let mut x = rhs.clone();
+        solver.solve_with(&matrix, &mut x).unwrap();
+        let error = backward_error(&matrix, &x, &rhs);
+        assert!(x[..24].iter().any(|x| x.abs() > 1e-3) && x[24..].iter().all(|x| x.abs() < 1e-280));
+        assert!(small > 1e-300 || error > 1e-8, "{small}: {error:e}");
+        let mut residual = vec![0.0; 48];
+        matrix.multiply(&x, &mut residual);
+        let largest = (residual.iter().zip(&rhs)).fold(0.0f64, |m, (r, b)| m.max((r - b).abs()));
+        assert!(largest < 1e-15, "{small}: {largest:e}");
+    }
+}

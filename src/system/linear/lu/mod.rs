@@ -27,6 +27,9 @@ use structure::Structure;
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Largest backward error of a solution that is accepted.
 const ACCEPTED: f64 = 1e-8;
+/// Part of what the largest unknown would make of a row below which that row is at rest, for each unknown of the system: round-off
+/// of all of them is no more.
+const AT_REST: f64 = 1000.0 * f64::EPSILON;
 /// Refinements at most where pivots were replaced; one elsewhere.
 const REFINEMENTS: u32 = 10;
 /// A matrix with replaced pivots is singular if refinement does not bring the residual below this share of the
@@ -349,13 +352,24 @@ impl Prepared {
     /// `max |b - A x| / (|A| |x| + |b|)` by rows (W. Oettli and W. Prager, "Compatibility of approximate solution of
     /// linear equations with given error bounds for coefficients and right-hand sides", Numer. Math. 6 (1964)); leaves
     /// the residual.
+    ///
+    /// Where a part has come to rest while others move, both terms below the line go down with every iteration until their last
+    /// digits underflow. Such rows are measured against what the largest unknown would make of them (M. Arioli, J. W. Demmel and
+    /// I. S. Duff, "Solving sparse linear systems with sparse backward error", SIAM J. Matrix Anal. Appl. 10 (1989)), which is their
+    /// largest entry times it: one, as rows and columns are scaled.
     fn backward_error(&mut self, matrix: &SystemMatrix, rhs: &[f64], x: &[f64]) -> f64 {
         self.residual(matrix, rhs, x);
         matrix.abs_multiply(x, &mut self.sizes);
+        let scaled = x.iter().zip(&self.scaling.columns);
+        let largest = scaled.map(|(x, c)| (x / c).abs()).fold(0.0, f64::max);
+        let at_rest = AT_REST * x.len() as f64;
         let mut worst = 0.0f64;
-        for ((r, size), b) in self.residual.iter().zip(&self.sizes).zip(rhs) {
+        let rows = self.residual.iter().zip(&self.sizes).zip(rhs);
+        for (((r, size), b), scale) in rows.zip(&self.scaling.rows) {
             if *r != 0.0 {
-                let ratio = r.abs() / (size + b.abs());
+                let (own, elsewhere) = (size + b.abs(), largest / scale);
+                let rests = own <= at_rest * (elsewhere + b.abs());
+                let ratio = r.abs() / if rests { size + elsewhere } else { own };
                 worst = if ratio.is_nan() {
                     f64::INFINITY
                 } else {
