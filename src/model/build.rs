@@ -39,9 +39,9 @@ use crate::scene::{
 use crate::shell::{Block, HeldNormal, Law, Memory, bytes_per_element};
 use covact_geometry::{PatchSet, Vec3};
 use nalgebra::Point3;
+pub use nurbs_bodies::SHEET_POINTS;
 use nurbs_bodies::sheet_rims;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// What to do where memory is short.
 pub(crate) const FEWER: &str = "take fewer elements, or a coarser mesh away from the contact (`spacing`), or a machine with more memory";
@@ -49,7 +49,7 @@ pub(crate) const FEWER: &str = "take fewer elements, or a coarser mesh away from
 /// What is being collected while the model is built.
 struct Builder<'s> {
     scene: &'s Scene,
-    dir: &'s Path,
+    loaded: &'s LoadedScene,
     /// The stage whose supports are resolved.
     stage: usize,
     nodes: Vec<Vec3>,
@@ -59,7 +59,6 @@ struct Builder<'s> {
     warnings: Vec<String>,
     /// Slave nodes with averaged gaps so far.
     averaged: usize,
-    /// Slave points with history so far.
     /// Of slave points at a height above a mid-surface so far.
     levers: Vec<Lever>,
     /// Fibres that supports stretch, so far.
@@ -88,7 +87,7 @@ pub fn build_stage(
 ) -> Result<Model, ModelError> {
     let lowered = stages::lowered(&loaded.scene);
     let scene = lowered.as_ref().unwrap_or(&loaded.scene);
-    let mut builder = Builder::new(scene, &loaded.dir);
+    let mut builder = Builder::new(scene, loaded);
     builder.stage = start.index;
     let bodies = builder.bodies();
     let sets = match bodies {
@@ -151,8 +150,8 @@ pub fn build_stage(
     stages::stabilized(&mut model)?;
     super::initial::check(&mut model, scene)?;
     match first {
-        true => super::driven::start::approach(&mut model, scene)?,
-        false => super::driven::start::resisted(&mut model, scene),
+        true => super::driven::start::approach(&mut model, loaded)?,
+        false => super::driven::start::resisted(&mut model, loaded),
     }
     Ok(model)
 }
@@ -175,14 +174,14 @@ pub fn exact_surface(loaded: &LoadedScene, name: &str) -> Result<PatchSet, Model
         size: None,
         count: Some([1, 1]),
     });
-    Builder::new(&loaded.scene, &loaded.dir).exact(name, &surface)
+    Builder::new(&loaded.scene, loaded).exact(name, &surface)
 }
 
 impl<'s> Builder<'s> {
-    fn new(scene: &'s Scene, dir: &'s Path) -> Self {
+    fn new(scene: &'s Scene, loaded: &'s LoadedScene) -> Self {
         Builder {
             scene,
-            dir,
+            loaded,
             stage: 0,
             nodes: Vec::new(),
             bodies: Vec::new(),
@@ -277,7 +276,7 @@ impl<'s> Builder<'s> {
             return self.push_body(name, mesh, block, (material, metal));
         }
         room(name, body, Memory::of(&material))?;
-        let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), self.dir)
+        let (mut mesh, report) = mesh::build(&body.mesh, body.element.into(), &self.loaded.dir)
             .map_err(|e| mesh_error(name, &body.mesh, e))?;
         place(&mut mesh, &body.placement);
         for (set, selection) in &body.sets {

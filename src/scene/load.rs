@@ -2,7 +2,7 @@
 use super::check;
 use super::document::{self, Document, Form};
 use super::problem::{Problem, SceneError};
-use super::types::Scene;
+use super::types::{Scene, Step};
 use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
@@ -36,6 +36,17 @@ impl Deref for LoadedScene {
 }
 
 impl LoadedScene {
+    /// The sizes of steps: what the scene gives, and what follows from it for the rest.
+    pub fn steps(&self) -> Step {
+        (self.scene.solution).steps(|key| self.has(&format!("/solution/step/{key}")))
+    }
+
+    /// Size of the first step, as long as nothing that is prescribed ends it.
+    pub fn first_step(&self) -> f64 {
+        let step = self.steps();
+        step.initial.min(step.max).min(self.scene.solution.end_time)
+    }
+
     /// The text with the places of everything in it.
     pub(super) fn document(&self) -> &Document {
         &self.document

@@ -55,6 +55,11 @@ impl Stepping {
         }
     }
 
+    /// Size of the first step.
+    pub fn initial(&self) -> f64 {
+        self.settings.initial
+    }
+
     /// End of the step that starts at `time`: what is left up to the next stop is divided into equal steps no larger
     /// than the present size, so that no sliver remains.
     pub fn next(&self, time: f64) -> f64 {

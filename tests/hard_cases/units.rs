@@ -67,3 +67,49 @@ fn units_do_not_change_the_result() {
         );
     }
 }
+
+/// Half of a hinged arch that a roll pushes through until it snaps, within `end`: where no equilibrium goes on is told from the sizes
+/// that steps have without anybody's choice, which are parts of a short run's time.
+fn snapped(end: f64) -> Outcome {
+    done(&json!({
+        "covact": 1,
+        "materials": { "steel": { "st_venant_kirchhoff": { "E": 206e3, "nu": 0.3 } } },
+        "bodies": { "arch": {
+            "mesh": { "cylinder_panel": {
+                "radius": 60, "thickness": 0.8, "angles": [0, 25], "y": [0, 4], "elements": [12, 1], "center": [0, 0, -60]
+            } },
+            "material": "steel"
+        } },
+        "surfaces": { "push": {
+            "cylinder": { "radius": 6, "length": 12, "center": [0, 2, 6.4], "axis": [0, 1, 0] },
+            "side": "outward",
+            "motion": { "translation": [0, 0, { "table": [[0, 0], [end, -9.5]] }] }
+        } },
+        "contacts": { "roll": { "slave": "arch.outer", "master": "push" } },
+        "supports": {
+            "hinge": { "on": "arch.phi_max", "mid_surface": true, "displacement": [0, 0, 0] },
+            "middle": { "on": "arch.phi_min", "symmetry": "x" },
+            "flat": { "on": "arch", "plane_strain": "y" }
+        },
+        "solution": { "end_time": end },
+        "output": { "every": 0 }
+    }))
+}
+
+#[test]
+fn a_snap_does_not_depend_on_the_unit_of_time() {
+    let [second, short] = [1.0, 0.017].map(snapped);
+    let peak = |run: &Outcome| {
+        run.column("force.push.z")
+            .iter()
+            .fold(0.0f64, |m, f| m.max(f.abs()))
+    };
+    assert!((peak(&second) - 164.0).abs() < 4.0, "{}", peak(&second));
+    assert!(
+        (peak(&short) / peak(&second) - 1.0).abs() < 1e-3,
+        "{}",
+        peak(&short)
+    );
+    let iterations = |run: &Outcome| run.column("iterations").iter().sum::<f64>();
+    assert!(iterations(&short) < 1.1 * iterations(&second));
+}

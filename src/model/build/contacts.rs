@@ -189,9 +189,7 @@ impl Builder<'_> {
     /// The largest pressure that loads exert on the bodies of a contact at the end of the first step, where it is the same everywhere
     /// (force / length^2): a penalty under which it sinks in too deep is known to be too soft.
     fn pressed(&self, bodies: [Option<usize>; 2]) -> f64 {
-        let solution = &self.scene.solution;
-        let step = &solution.step;
-        let first = step.initial.min(step.max).min(solution.end_time);
+        let first = self.loaded.first_step();
         let on = |set: &str| {
             let name = set.split('.').next().unwrap_or(set);
             let body = self.body_index.get(name).copied();

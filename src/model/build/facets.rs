@@ -116,7 +116,7 @@ impl Builder<'_> {
     /// The file that a surface names.
     pub(super) fn read_cad(&self, name: &str, cad: &scene::CadFile) -> Result<Source, ModelError> {
         let field = || format!("/surfaces/{name}/cad/file");
-        let path = self.dir.join(&cad.file);
+        let path = self.loaded.dir.join(&cad.file);
         let options = ReadOptions { hidden: cad.hidden };
         let error = match read_path_with(&path, &options) {
             Ok(file) => return Ok(Source::Cad(file)),

@@ -17,7 +17,7 @@ use crate::shell::{Block, Law, Memory, NurbsBlock, bytes_per_element};
 use covact_geometry::{NurbsPatch, Vec3, io};
 
 /// Points along each direction of a face where the scene asks for none: as many as its polynomials have numbers.
-const POINTS: usize = 4;
+pub const SHEET_POINTS: usize = 4;
 
 impl Builder<'_> {
     /// The sheet of a body, its mesh and its elements.
@@ -167,7 +167,8 @@ impl Builder<'_> {
         let options = io::ReadOptions {
             hidden: nurbs.hidden,
         };
-        let file = io::read_path_with(&self.dir.join(&nurbs.file), &options).at(|| at("file"))?;
+        let file =
+            io::read_path_with(&self.loaded.dir.join(&nurbs.file), &options).at(|| at("file"))?;
         let wanted = |entity: u32| nurbs.faces.is_empty() || nurbs.faces.contains(&entity);
         let listed = || -> String {
             let all: Vec<String> = file.patches.iter().map(|p| p.entity.to_string()).collect();
@@ -309,7 +310,7 @@ impl Builder<'_> {
             return Ok(Vec::new());
         };
         let rule = match points {
-            Points::Auto | Points::Nodes | Points::Segments(_) => gauss(POINTS)?,
+            Points::Auto | Points::Nodes | Points::Segments(_) => gauss(SHEET_POINTS)?,
             Points::Gauss(n) => gauss(n as usize)?,
             Points::Lobatto(n) => lobatto(n as usize)?,
         };

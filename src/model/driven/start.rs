@@ -4,7 +4,7 @@ use super::press::Presser;
 use super::{Driven, Model, ModelError, SurfaceModel, text};
 use crate::contact::law::Penalty;
 use crate::model::error::{At, number};
-use crate::scene::{Scene, ValueError};
+use crate::scene::{LoadedScene, ValueError};
 use nalgebra::Vector6;
 
 /// Part of an element below which lengths have to be told apart: contact rests on penetrations not much larger.
@@ -46,8 +46,8 @@ fn resolved(
 ///
 /// # Errors
 /// [`ModelError`] where it would never touch, has no contact at all, or nothing ever drives it.
-pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
-    let first = first_step(model, scene);
+pub fn approach(model: &mut Model, loaded: &LoadedScene) -> Result<(), ModelError> {
+    let first = first_step(model, loaded);
     let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
     let u = vec![0.0; 3 * model.nodes.len()];
     let (mut starts, mut frictional, mut waiting) = (Vec::new(), Vec::new(), Vec::new());
@@ -74,7 +74,7 @@ pub fn approach(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
                 continue;
             }
             None => {
-                let (later, e) = sets_in(model, scene, driven, first).at(pointer)?.ok_or_else(|| {
+                let (later, e) = sets_in(model, loaded, driven, first).at(pointer)?.ok_or_else(|| {
                     let message = format!(
                         "surface `{name}` is driven by force {}, but the force is zero at all times: nothing presses it \
                          against a body",
@@ -144,14 +144,18 @@ const LOOKED_AT: u32 = 1000;
 /// direction. The time is the last one before it at which there was no force.
 fn sets_in(
     model: &Model,
-    scene: &Scene,
+    loaded: &LoadedScene,
     driven: &Driven,
     first: f64,
 ) -> Result<Option<(f64, Vector6<f64>)>, ValueError> {
     let u = vec![0.0; 3 * model.nodes.len()];
-    let end = scene.solution.end_time;
+    let end = loaded.scene.solution.end_time;
     let even = (1..=LOOKED_AT).map(|i| end * f64::from(i) / f64::from(LOOKED_AT));
-    let kinks = model.kinks.iter().chain(&scene.solution.stops).copied();
+    let kinks = model
+        .kinks
+        .iter()
+        .chain(&loaded.scene.solution.stops)
+        .copied();
     let mut times: Vec<f64> = (even.chain(kinks))
         .filter(|t| first < *t && *t <= end)
         .collect();
@@ -167,19 +171,15 @@ fn sets_in(
 }
 
 /// The end of the first step.
-fn first_step(model: &Model, scene: &Scene) -> f64 {
-    let step = &scene.solution.step;
-    let stops = model.kinks.iter().chain(&scene.solution.stops);
-    (stops.copied().filter(|t| *t > 0.0)).fold(
-        step.initial.min(step.max).min(scene.solution.end_time),
-        f64::min,
-    )
+fn first_step(model: &Model, loaded: &LoadedScene) -> f64 {
+    let stops = model.kinks.iter().chain(&loaded.scene.solution.stops);
+    (stops.copied().filter(|t| *t > 0.0)).fold(loaded.first_step(), f64::min)
 }
 
 /// Which surfaces friction alone resists, in a stage after the first: seen from where they start, so that a run that is continued
 /// knows the same.
-pub fn resisted(model: &mut Model, scene: &Scene) {
-    let first = first_step(model, scene);
+pub fn resisted(model: &mut Model, loaded: &LoadedScene) {
+    let first = first_step(model, loaded);
     let penalties: Vec<f64> = model.pairs.iter().map(|p| p.eps_n).collect();
     let u = vec![0.0; 3 * model.nodes.len()];
     let mut frictional = Vec::new();

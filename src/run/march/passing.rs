@@ -90,7 +90,7 @@ impl March<'_, '_> {
             && self.model.small.is_none()
             && self.model.dynamics.is_none();
         let given_up = walk.given_up == Some(step);
-        let initial = self.scene.solution.step.initial;
+        let initial = walk.stepping.initial();
         // From rest a path begins that is merely steep: how small its first step has to be says nothing of a jump.
         let rest = step == 1;
         let small = dt < BELOW * initial && !rest || walk.stepping.smallest(dt);

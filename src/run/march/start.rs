@@ -318,7 +318,7 @@ impl StepControl {
         let settings = &loaded.scene.solution;
         StepControl {
             stepping: Stepping::new(
-                settings.steps(|key| loaded.has(&format!("/solution/step/{key}"))),
+                loaded.steps(),
                 settings.end_time,
                 &model.kinks,
                 &settings.stops,
