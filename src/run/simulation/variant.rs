@@ -6,12 +6,14 @@ use super::substitute::Former;
 use crate::model::error::number;
 use crate::output::Table;
 use crate::scene::{
-    Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, Passes, Points, SetNames,
-    pointer,
+    Contact, Element, Friction, Kinematics, LoadedScene, MasterSurface, MeshSource, Passes, Points,
+    Scene, SetNames, pointer,
 };
 
-/// Gauss points along each direction of a face that see what its nodes do not.
+/// Gauss points along each direction of a face that see what its nodes do not, and of an element of a CAD surface that bends, which
+/// spans many of the faces that a shell of bricks would have.
 const SEEING: u8 = 3;
+const SEEING_SHEETS: u8 = 10;
 
 /// A scene with other elements or passes than the default ones, and what is told of the change.
 #[derive(Debug, Clone)]
@@ -145,20 +147,33 @@ pub(super) fn with_points(
     contacts: &[&str],
 ) -> Option<Safe> {
     let mut safe = Safe::of(scene, before);
-    let mut found = Vec::new();
+    let mut found: [Vec<String>; 2] = Default::default();
     for name in contacts {
-        let contact = safe.loaded.scene.contacts.get_mut(*name)?;
+        let Scene {
+            contacts, bodies, ..
+        } = &mut safe.loaded.scene;
+        let contact = contacts.get_mut(*name)?;
         if contact.points == Points::Auto {
-            contact.points = Points::Gauss(SEEING);
-            found.push(format!("`{name}`"));
+            let body = bodies.get(contact.slave.body());
+            let sheet = body.is_some_and(|body| matches!(body.mesh, MeshSource::Nurbs(_)));
+            contact.points = Points::Gauss(if sheet { SEEING_SHEETS } else { SEEING });
+            found[usize::from(sheet)].push(format!("`{name}`"));
         }
     }
-    let text = format!(
-        "while the surface had sunk into the slave between its nodes, pushed them aside, or left them hanging over its border; it was repeated with {SEEING} x {SEEING} Gauss points a face as \
-         slave points (`\"points\": \"nodes\"` keeps them)"
-    );
-    safe.notes.push(stopped(&found, time, &text));
-    (!found.is_empty()).then_some(safe)
+    let words = [("nodes", SEEING), ("points", SEEING_SHEETS)];
+    for (found, (seen, n)) in found
+        .iter()
+        .zip(words)
+        .filter(|(found, _)| !found.is_empty())
+    {
+        let text = format!(
+            "while the surface had sunk into the slave between its {seen}, pushed them aside, or left them hanging over its border; it was \
+             repeated with {n} x {n} Gauss points a face as slave points (`\"points\": \"nodes\"` keeps them; where few of them carry, pressures at \
+             single points scatter about those of the surface)"
+        );
+        safe.notes.push(stopped(found, time, &text));
+    }
+    found.iter().any(|found| !found.is_empty()).then_some(safe)
 }
 
 /// The scene with the rims of rigid surfaces as slaves, in every contact that may have them.

@@ -7,14 +7,19 @@
 //! Forces that lean aside ([`super::aside`]) are looked at besides: where the slave is deformed by much, or carried by few points, they
 //! tell more.
 //!
+//! A sheet's own surface is no polygon, but its points are as far apart; what leans aside is not looked at there.
+//!
 //! That way is the longest so far: where a tool is drawn back forces are small, and so is what they are off by. While it grows it is
 //! taken to go on as in the last step until the end, so that a run is not given up for its first touch.
 use super::aside::{Lean, Leaning, is_smooth};
 use super::deformed;
+use crate::contact::lever::Lever;
 use crate::fem::face::Quad;
-use crate::fem::quadrature::lobatto;
+use crate::fem::quadrature::{MAX_POINTS, Rule, lobatto};
+use crate::mesh::nurbs::{SheetPoint, side};
 use crate::mesh::{Face, Mesh};
 use crate::model::Model;
+use crate::model::build::SHEET_POINTS;
 use crate::model::error::number;
 use crate::model::state::State;
 use crate::run::bearing::Bearing;
@@ -53,8 +58,8 @@ struct Watched {
     pair: usize,
     /// It may have more slave points in another variant of the run.
     may: bool,
-    /// Places on every face that its points see least, in its parameters.
-    places: Vec<[f64; 2]>,
+    /// Places on every face that its points see least, along each of its parameters.
+    places: Rule,
     /// Per face how far it lies off the curved surface that it stands for (length).
     bulges: Vec<f64>,
     /// Nodes of the slave faces.
@@ -130,21 +135,16 @@ impl Travel {
     }
 }
 
-/// Places on a face that slave points of a kind see least.
-fn places(points: Points) -> Option<Vec<[f64; 2]>> {
+/// Places on a face that slave points of a kind see least. `nodes`: points that stand for a face's nodes, where it has others.
+fn places(points: Points, nodes: Option<usize>) -> Option<Rule> {
+    let between = |gauss: usize| (gauss + 2).min(MAX_POINTS);
     let n = match points {
-        Points::Auto | Points::Nodes => 5,
-        Points::Gauss(n) => n as usize + 2,
+        Points::Auto | Points::Nodes => nodes.map_or(5, between),
+        Points::Gauss(n) => between(n as usize),
         Points::Lobatto(n) => n as usize + 1,
         Points::Segments(_) => return None,
     };
-    let rule = lobatto(n).ok()?;
-    let line = rule.points();
-    Some(
-        line.iter()
-            .flat_map(|u| line.iter().map(|v| [*u, *v]))
-            .collect(),
-    )
+    lobatto(n).ok()
 }
 
 /// Per face how far its middle lies off the curved surface through its nodes, by their normals: twice an edge's `L (m - n) / 8` at most.
@@ -204,11 +204,16 @@ impl Watched {
         let own = &model.pairs[pair];
         own.rigid_master()?;
         let body = &model.bodies[own.body];
-        if own.faces.is_empty() || body.block.sheet().is_some() || own.edges_of.is_some() {
+        if own.faces.is_empty() || own.edges_of.is_some() {
             return None;
         }
+        let sheet = body.block.sheet();
+        let of_face = |f: &Face| match sheet {
+            Some(_) => body.mesh.element(f.element as usize).to_vec(),
+            None => body.mesh.face_nodes(*f).nodes().to_vec(),
+        };
         let mut nodes: Vec<u32> = (own.faces.iter())
-            .flat_map(|f| body.mesh.face_nodes(*f).nodes().to_vec())
+            .flat_map(of_face)
             .map(|n| n + body.first_node)
             .collect();
         nodes.sort_unstable();
@@ -216,10 +221,17 @@ impl Watched {
         Some(Watched {
             pair,
             may,
-            places: places(own.sampled)?,
-            bulges: bulges(&body.mesh, &own.faces),
+            places: places(own.sampled, sheet.map(|_| SHEET_POINTS))?,
+            bulges: match sheet {
+                // Its elements follow its own surface.
+                Some(_) => vec![0.0; own.faces.len()],
+                None => bulges(&body.mesh, &own.faces),
+            },
             nodes,
-            leaning: Leaning::new(model, pair),
+            leaning: match sheet {
+                Some(_) => None,
+                None => Leaning::new(model, pair),
+            },
             travel: Travel::default(),
         })
     }
@@ -229,21 +241,19 @@ impl Watched {
         let pair = &model.pairs[self.pair];
         let surface = &model.surfaces[pair.rigid_master()?];
         let master = surface.at(to, u).ok()?;
-        let body = &model.bodies[pair.body];
         let faces = pair.faces.par_iter().zip(&self.bulges);
-        let deepest = faces.map_init(Vec::new, |feet, (face, bulge)| {
-            let quad = Quad::new(&body.mesh.face_nodes(*face), |n| {
-                model.position((n + body.first_node) as usize, u)
-            });
-            let middle = quad.point(0.0, 0.0);
-            let reach = (quad.nodes[0] - middle).norm() + pair.offset + surface.depth;
-            if master.foot(&middle, None, reach).is_none() {
+        let deepest = faces.map_init(Default::default, |room, (face, bulge)| {
+            let (points, feet): &mut (Vec<Vec3>, Vec<Option<Foot>>) = room;
+            let near = |middle: &Vec3, size: f64| {
+                let reach = size + pair.offset + surface.depth;
+                (master.foot(middle, None, reach).is_some()).then_some(reach)
+            };
+            points.clear();
+            let Some(reach) = self.points_near(model, *face, u, near, points) else {
                 return 0.0;
-            }
+            };
             feet.clear();
-            feet.extend(
-                (self.places.iter()).map(|[u, v]| master.foot(&quad.point(*u, *v), None, reach)),
-            );
+            feet.extend(points.iter().map(|point| master.foot(point, None, reach)));
             // A face that lies across an edge is bent around it, which is another question.
             if bent(feet) {
                 return 0.0;
@@ -254,6 +264,44 @@ impl Watched {
             near.fold(0.0, |most: f64, depth| most.max(depth - bulge))
         });
         Some(deepest.reduce(|| 0.0, f64::max))
+    }
+
+    /// Adds the places on a face, at displacements `u`, where `near` gives the reach of what may lie near its middle, of which its
+    /// corners are so far away.
+    fn points_near(
+        &self,
+        model: &Model,
+        face: Face,
+        u: &[f64],
+        near: impl Fn(&Vec3, f64) -> Option<f64>,
+        points: &mut Vec<Vec3>,
+    ) -> Option<f64> {
+        let body = &model.bodies[model.pairs[self.pair].body];
+        let at = |n: u32| model.position((n + body.first_node) as usize, u);
+        let Some(sheet) = body.block.sheet() else {
+            let quad = Quad::new(&body.mesh.face_nodes(face), at);
+            let middle = quad.point(0.0, 0.0);
+            let reach = near(&middle, (quad.nodes[0] - middle).norm())?;
+            let line = self.places.points();
+            points.extend((line.iter()).flat_map(|u| line.iter().map(|v| quad.point(*u, *v))));
+            return Some(reach);
+        };
+        let controls = body.mesh.element(face.element as usize);
+        let middle = controls.iter().map(|n| at(*n)).sum::<Vec3>() / controls.len() as f64;
+        let size = (controls.iter()).fold(0.0f64, |most, n| most.max((at(*n) - middle).norm()));
+        let reach = near(&middle, size + sheet.thickness)?;
+        let height = 0.5 * sheet.thickness * side(face).unwrap_or(1.0);
+        let sampled = sheet.sampled(std::iter::once(face.element as usize), &self.places);
+        points.extend(sampled.into_iter().map(|SheetPoint { nodes, n, n_i, .. }| {
+            let lever = Lever {
+                nodes,
+                n,
+                n_i,
+                height,
+            };
+            lever.position(at)
+        }));
+        Some(reach)
     }
 
     /// Looks at an accepted step, from time `from` to `to`. Returns how far off it is, as a multiple of what is worth a run of its own

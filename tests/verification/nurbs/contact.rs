@@ -60,6 +60,47 @@ fn plate_under_a_rough_ball() {
     assert!(rough > smooth && off(rough, smooth) < 0.05);
 }
 
+/// A clamped square plate under a small ball that goes down by .1, a quarter of it in 10 x 10 elements, at default settings: the ball
+/// touches between the points of an element, which alone would let it sink in by a tenth of that way.
+///
+/// S. Timoshenko and S. Woinowsky-Krieger, Theory of plates and shells (1959), table 37: `w = .00560 P a^2 / D` under a force at the
+/// centre; as large as the thickness is to the side, a patch of contact of .1 changes it by less than the 1.5 % that are allowed.
+#[test]
+fn a_small_ball_between_the_points_of_a_plate_is_seen() {
+    let (modulus, thickness, half, way) = (210e3, 2.0, 50.0, 0.1);
+    let outcome = solve_sheet(
+        &Patch::plate([half, half], 0.0),
+        &json!({
+            "covact": 1,
+            "materials": {"m": {"st_venant_kirchhoff": {"E": modulus, "nu": 0.3}}},
+            "bodies": {"sheet": sheet(thickness, [10, 10])},
+            "surfaces": {"ball": {
+                "sphere": {"radius": 15, "center": [0, 0, 16]},
+                "motion": {"translation": [0, 0, format!("-{way}*t")]}
+            }},
+            "contacts": {"press": {"slave": "sheet.top", "master": "ball"}},
+            "supports": {
+                "symmetry_x": {"on": "sheet.edge.1", "symmetry": "x"},
+                "symmetry_y": {"on": "sheet.edge.3", "symmetry": "y"},
+                "clamped": {"on": ["sheet.edge.2", "sheet.edge.4"], "clamped": true}
+            },
+            "output": {"every": 0}
+        }),
+    );
+    let bending = modulus * f64::powi(thickness, 3) / (12.0 * (1.0 - 0.3 * 0.3));
+    let expected = way * bending / (0.0056 * 4.0 * half * half);
+    let force = -4.0 * outcome.at("force.ball.z", 1.0);
+    assert!(off(force, expected) < 0.015, "{force} for {expected}");
+    // In each step, not at the end alone.
+    let early = -4.0 * outcome.at("force.ball.z", 0.5);
+    assert!(off(early, 0.5 * expected) < 0.03, "{early}");
+    assert!(
+        outcome.summary.warnings.is_empty(),
+        "{:?}",
+        outcome.summary.warnings
+    );
+}
+
 /// The forces that a driver and supports exert on bodies balance, to what Newton's method leaves; the driver comes first.
 pub fn balance(outcome: &Outcome, acting: &[&str]) {
     let force = |of: &str, c: &str| outcome.at(&format!("force.{of}.{c}"), 1.0);
