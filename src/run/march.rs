@@ -333,7 +333,7 @@ impl March<'_, '_> {
                     }
                     let done = walk.stepping.done(end);
                     self.tell_weighted(step, dt);
-                    self.tell_energy(step, done);
+                    self.tell_energy(done);
                     let mut ending = self.stabilized(committed, &drag, &converged, done);
                     if ending.is_none() {
                         let before = walk.before.as_ref().map(|(state, _)| state);

@@ -67,6 +67,9 @@ pub struct Watch {
     /// The largest change of the imbalance in one step, and that step.
     pub worst: f64,
     pub worst_step: u32,
+    /// The most that the energies have come from nowhere so far, and in which step (energy).
+    pub gained: f64,
+    pub gained_step: u32,
     /// Largest displacement of a node by the time it took, in the last step and in the one before.
     pub speed: [f64; 2],
     /// Start and end of the last step; both zero before the first.
@@ -183,6 +186,8 @@ impl Watch {
             heading: self.heading.clone(),
             worst: self.worst,
             worst_step: self.worst_step,
+            gained: self.gained,
+            gained_step: self.gained_step,
             speed: self.speed,
             span: self.span,
             penalties: self.penalties,
@@ -202,6 +207,8 @@ impl Watch {
             heading,
             worst,
             worst_step,
+            gained,
+            gained_step,
             speed,
             span,
             snaps,
@@ -216,9 +223,12 @@ impl Watch {
             faint: _,
         } = self;
         out.bool(*snaps);
-        out.f64s(&[*external, *adjusted, *imbalance, *turnover, *worst, *stored]);
+        out.f64s(&[
+            *external, *adjusted, *imbalance, *turnover, *worst, *stored, *gained,
+        ]);
         out.f64s(&[*most, *work, *lag]);
         out.u32(*worst_step);
+        out.u32(*gained_step);
         out.f64s(speed);
         out.f64s(span);
         for numbers in [reactions, loads, penalties, ratios, pressed] {
@@ -239,7 +249,7 @@ impl Watch {
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
         watch.snaps = from.bool()?;
-        let mut sums = [0.0; 6];
+        let mut sums = [0.0; 7];
         from.f64s(&mut sums)?;
         [
             watch.external,
@@ -248,12 +258,14 @@ impl Watch {
             watch.turnover,
             watch.worst,
             watch.stored,
+            watch.gained,
         ] = sums;
         let mut flow = [0.0; 3];
         from.f64s(&mut flow)?;
         let [most, work, lag] = flow;
         watch.flow = Flow { most, work, lag };
         watch.worst_step = from.u32()?;
+        watch.gained_step = from.u32()?;
         from.f64s(&mut watch.speed)?;
         from.f64s(&mut watch.span)?;
         for numbers in [
@@ -421,6 +433,9 @@ impl Watch {
         let last_span = std::mem::replace(&mut self.span, [from, to]);
         if lost.abs() > self.worst.abs() {
             (self.worst, self.worst_step) = (lost, step);
+        }
+        if -self.imbalance > self.gained {
+            (self.gained, self.gained_step) = (-self.imbalance, step);
         }
         let part = lost.abs() / self.turnover.max(energy.abs());
         let limit = if softened { OTHER } else { JUMP };

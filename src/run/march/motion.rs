@@ -212,21 +212,24 @@ impl March<'_, '_> {
         }
     }
 
-    /// Tells of energy that came from nowhere, and at the end of what the integration has taken.
-    pub(super) fn tell_energy(&mut self, step: u32, last: bool) {
-        let Some(inertia) = &self.assembler.effects.inertia else {
+    /// Tells at the end of energy that came from nowhere, and of what the integration has taken. While a run begins all that there is
+    /// is as small as the errors of its sums.
+    pub(super) fn tell_energy(&mut self, last: bool) {
+        let (Some(inertia), true) = (&self.assembler.effects.inertia, last) else {
             return;
         };
         let (greatest, lost) = (inertia.motion().greatest, self.watch.imbalance);
         let greatest = greatest.max(self.watch.external.abs());
-        if -lost > GAINS * greatest {
-            let part = format!("{:.0} %", 100.0 * GAINS);
-            self.warn_of_step(
-                step,
-                &format!("the time integration has gained more than {part} of the greatest energy so far: take smaller steps"),
-            );
+        let (gained, step) = (self.watch.gained, self.watch.gained_step);
+        if gained > GAINS * greatest {
+            self.warn(format!(
+                "the time integration had gained {} by step {step}, {:.0} % of the greatest energy: take smaller steps \
+                 (`solution.dynamics.tolerance`, `solution.step.max`)",
+                number(gained),
+                100.0 * gained / greatest
+            ));
         }
-        if last && lost > TAKES * greatest {
+        if lost > TAKES * greatest {
             self.warn(format!(
                 "the time integration has taken {} in all, {:.0} % of the greatest energy: what moves too fast for the steps is \
                  damped, and at impacts penalties act as dampers; take smaller steps (`solution.dynamics.tolerance`, \
