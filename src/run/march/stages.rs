@@ -200,9 +200,20 @@ impl RunState<'_> {
         let bearing: Vec<String> = stage.ending.iter().filter(bears).cloned().collect();
         let mut texts = Vec::new();
         if reaction > NOTHING * stage.start.force {
+            // Each body has supports of its own, which hold it against what others press on it.
+            let mut between = model.pairs.iter().zip(forces).filter(|(pair, bearing)| {
+                pair.body_master().is_some() && bearing.force > NOTHING * stage.start.force
+            });
+            let why = match between.next() {
+                Some((pair, _)) => format!(
+                    "bodies press on each other in contact `{}`, and what is left is not the shape of free bodies: release it, too",
+                    pair.name
+                ),
+                None => "loads act on the body, or its supports do not fit together".to_owned(),
+            };
             texts.push(format!(
                 "stage `{}`: the supports that were found exert forces up to {reaction:.3e} at its end, where they should \
-                 exert none: loads act on the body, or its supports do not fit together",
+                 exert none: {why}",
                 stage.name
             ));
         }
