@@ -71,7 +71,7 @@ fn energies_that_begin_with_nothing_are_not_told() {
         "covact": 1,
         "materials": { "m": { "neo_hooke": { "E": 20, "nu": 0, "density": 1.1e-9 } } },
         "bodies": { "b": {
-            "mesh": { "block": { "size": [10, 10, 10], "elements": [5, 2, 2] } }, "material": "m"
+            "mesh": { "block": { "size": [10, 10, 10], "elements": [5, 5, 5] } }, "material": "m"
         } },
         "surfaces": { "wall": {
             "plane": { "size": [40, 40], "center": [-0.5, 5, 5], "normal": [1, 0, 0] },
