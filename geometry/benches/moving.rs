@@ -1,7 +1,7 @@
 //! Facets that move: time per facet of an update, and points per second of the closest point, cold and warm (from the foot
 //! before the last motion), near the facets and far; for every degree, on one thread.
 
-#[path = "../tests/moving_common/mod.rs"]
+#[path = "../tests/moving/common.rs"]
 mod moving_common;
 
 use std::hint::black_box;

@@ -4,7 +4,7 @@
 //!
 //! `COVACT_BENCH_RIVALS=0` leaves the others out; an argument keeps the sets whose name contains it.
 
-#[path = "../tests/projection_common/mod.rs"]
+#[path = "../tests/projection/common/mod.rs"]
 mod projection_common;
 
 use std::hint::black_box;

@@ -3,9 +3,9 @@
 //!
 //! `cargo bench -p covact-geometry --bench trim`
 
-#[path = "../tests/projection_common/mod.rs"]
+#[path = "../tests/projection/common/mod.rs"]
 mod projection_common;
-#[path = "../tests/trim_common/mod.rs"]
+#[path = "../tests/projection/curves.rs"]
 mod trim_common;
 
 use std::f64::consts::TAU;

@@ -2,7 +2,8 @@
 //!
 //! A reader may hold 100 times the file and 1 MB on top of that. Time is bounded loosely, because machines differ and are busy.
 
-mod iges_builder;
+#[path = "iges/builder.rs"]
+mod builder;
 mod mutate_common;
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -10,11 +11,11 @@ use std::cell::Cell;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use builder::Builder;
 use covact_geometry::io::{
     CadFile, read_iges, read_iges_geometry, read_json, read_step, read_stl, write_json,
 };
 use covact_geometry::{PatchSet, Vec3};
-use iges_builder::Builder;
 use mutate_common::{Random, damaged};
 
 /// The system's allocator, counting for each thread the bytes in use and the most there ever were.

@@ -1,0 +1,4 @@
+//! Closest points of surfaces that move.
+mod common;
+mod facets;
+mod smooth;
