@@ -230,16 +230,17 @@ fn surface<'n>(out: &mut Paragraphs, s: &SurfaceReport, notes: impl Iterator<Ite
 
 fn contact<'n>(out: &mut Paragraphs, p: &PairReport, notes: impl Iterator<Item = &'n str>) {
     out.head(&format!("contact `{}`", p.name));
-    out.line(
-        "slave",
-        &format!(
-            "{}: {} points, {}, {} apart",
+    let slave = match p.points {
+        // It does not act in the first stage.
+        0 => p.slave.clone(),
+        points => format!(
+            "{}: {points} points, {}, {} apart",
             p.slave,
-            p.points,
             p.sampling,
             number(p.spacing)
         ),
-    );
+    };
+    out.line("slave", &slave);
     out.line("master", &p.master);
     for n in notes {
         match n.split_once(' ') {

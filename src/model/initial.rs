@@ -155,12 +155,28 @@ fn turned_away(model: &Model, body: usize, node: u32, x: &Vec3, n: &Vec3) -> boo
     sum < -0.1 * length
 }
 
+/// When a contact without slave points in a stage begins to act, where that is in a later one.
+fn acts_later(scene: &Scene, model: &Model, index: usize) -> Option<String> {
+    let name = model.pairs[index].name.as_str();
+    let now = model.stage.as_ref().map_or(0, |s| s.start.index);
+    let acts = |k: &usize| scene.active_contacts(*k).contains(name);
+    let first = (now + 1..scene.stages.len()).find(acts)?;
+    Some(format!(
+        "contact `{name}`: acts from stage `{}` on",
+        scene.stages[first].name
+    ))
+}
+
 /// Refuses tools that start deep inside a body, and warns of small overclosures and of slave points too coarse for the
 /// tool.
 pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> {
     let mut warnings = Vec::new();
     let mut notes = Vec::new();
     for index in 0..model.pairs.len() {
+        if model.pairs[index].points.is_empty() {
+            notes.extend(acts_later(scene, model, index));
+            continue;
+        }
         let mut gaps = Vec::new();
         let mut gap = initial_gaps(model, index, &mut gaps)?;
         if let Some(found) =

@@ -108,6 +108,19 @@ fn an_elastic_plate_goes_back() {
     }
 }
 
+/// `check` says from when on a contact acts that a later stage brings, and nothing of points that it has not got yet.
+#[test]
+fn a_contact_of_a_later_stage_is_told_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let stages = json!([{ "name": "rest", "until": 0.5, "contacts": [] }, { "name": "push", "contacts": ["press"] }]);
+    write_plate(folder.path(), &[("/stages", stages)]);
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = unfolded(&stdout(&output));
+    assert!(told.contains("acts from stage `push` on"), "{told}");
+    assert!(!told.contains(" 0 points"), "{told}");
+}
+
 /// A plate that a pressure lifts against the ball is not free when the ball is back.
 #[test]
 fn a_contact_that_still_bears_is_told() {
