@@ -64,7 +64,12 @@ impl DerefMut for LoadedScene {
 /// # Errors
 /// [`SceneError`]: the file cannot be read, is not JSON, or does not have the form of a scene.
 pub fn load(path: impl AsRef<Path>) -> Result<LoadedScene, SceneError> {
-    let (scene, document) = document::load::<Scene>(path.as_ref())?;
+    of_file(path.as_ref())
+}
+
+/// [`load`] without a type parameter: who calls it does not compile the reading of scenes once more.
+fn of_file(path: &Path) -> Result<LoadedScene, SceneError> {
+    let (scene, document) = document::load::<Scene>(path)?;
     Ok(LoadedScene { scene, document })
 }
 

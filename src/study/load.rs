@@ -40,7 +40,12 @@ impl DerefMut for LoadedStudy {
 /// # Errors
 /// [`SceneError`]: the file cannot be read, is not JSON, or does not have the form of a study.
 pub fn load(path: impl AsRef<Path>) -> Result<LoadedStudy, SceneError> {
-    let (study, document) = load_document::<Study>(path.as_ref())?;
+    of_file(path.as_ref())
+}
+
+/// [`load`] without a type parameter, as for scenes.
+fn of_file(path: &Path) -> Result<LoadedStudy, SceneError> {
+    let (study, document) = load_document::<Study>(path)?;
     Ok(LoadedStudy { study, document })
 }
 
