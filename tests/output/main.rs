@@ -1,0 +1,4 @@
+//! Files of results.
+mod atomic;
+mod folder;
+mod vtu;
