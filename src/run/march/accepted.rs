@@ -179,7 +179,7 @@ impl March<'_, '_> {
         let mut jumped = false;
         if let Some((text, by_elements)) = told {
             jumped = by_elements;
-            self.warn(text);
+            self.warn_of_balance(step, text);
         }
         let end = StepEnd {
             step,

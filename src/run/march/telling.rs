@@ -6,6 +6,12 @@ use crate::solve::event::Event;
 /// Couple of stretched fibres beside that which bends the shell, from which on a border is held by them.
 const HOLDS: f64 = 0.1;
 
+/// Steps out of balance that are each told in full; what every warning of one has, and what is told of further ones.
+const IN_FULL: usize = 3;
+const NOWHERE: &str = " nowhere, ";
+const AGAIN: &str = "the energies are out of balance again, as told of steps before; `energy.imbalance` in history.csv says by how \
+                     much";
+
 /// The first of the steps that the head of a warning names, `step 3: ` or `steps 3 to 9 (4 of them): `, and how many they are.
 fn steps_told(head: &str) -> Option<(u32, u32)> {
     if let Some(step) = head.strip_prefix("step ") {
@@ -14,6 +20,12 @@ fn steps_told(head: &str) -> Option<(u32, u32)> {
     let (first, rest) = head.strip_prefix("steps ")?.split_once(" to ")?;
     let (_, count) = rest.strip_suffix(" of them): ")?.split_once(" (")?;
     Some((first.parse().ok()?, count.parse().ok()?))
+}
+
+/// Whether what there is to tell of the balance of a step is told in full, after these warnings.
+fn in_full(before: &[String], text: &str) -> bool {
+    let told = before.iter().filter(|told| told.contains(NOWHERE)).count();
+    told < IN_FULL || !text.contains(NOWHERE)
 }
 
 impl March<'_, '_> {
@@ -55,6 +67,14 @@ impl March<'_, '_> {
         }
     }
 
+    /// Reports a step whose energies are out of balance. Where many are, the first few say what there is to say.
+    pub(super) fn warn_of_balance(&mut self, step: u32, text: String) {
+        match in_full(&self.progress.warnings, &text) {
+            true => self.warn(text),
+            false => self.warn_of_step(step, AGAIN),
+        }
+    }
+
     /// Reports a warning once.
     pub(in crate::run) fn warn(&mut self, text: String) {
         if !self.progress.warnings.contains(&text) {
@@ -66,7 +86,25 @@ impl March<'_, '_> {
 
 #[cfg(test)]
 mod tests {
-    use super::steps_told;
+    use super::{AGAIN, in_full, steps_told};
+    use crate::run::watch::Jump;
+
+    /// Three steps out of balance are told each, others counted; AGAIN is none of them.
+    #[test]
+    fn many_steps_out_of_balance_are_counted() {
+        let jump =
+            |lost: f64| Jump { lost, part: 0.02 }.words((4, 0.5), false, "Take smaller steps");
+        for text in [jump(0.1), jump(-0.1)] {
+            let mut warnings = vec!["contact `c`: it opened".to_owned()];
+            for _ in 0..3 {
+                assert!(in_full(&warnings, &text));
+                warnings.push(text.clone());
+            }
+            assert!(!in_full(&warnings, &text));
+            assert!(in_full(&warnings, "step 9 moved 20 times as fast"));
+        }
+        assert!(!AGAIN.contains(super::NOWHERE));
+    }
 
     #[test]
     fn steps_of_a_warning_are_counted() {

@@ -20,6 +20,16 @@ impl Jump {
         (step, [from, to]): (u32, [f64; 2]),
         softened: bool,
     ) -> String {
+        self.words((step, to), softened, &smoother(model, from))
+    }
+
+    /// The same with the remedy in words.
+    pub(in crate::run) fn words(
+        &self,
+        (step, time): (u32, f64),
+        softened: bool,
+        remedy: &str,
+    ) -> String {
         let (did, what) = match self.lost > 0.0 {
             true => ("lost", "went"),
             false => ("gained", "came"),
@@ -32,13 +42,14 @@ impl Jump {
         };
         format!(
             "step {step} (time {}) {did} an energy of {:.3e} that {what} nowhere, {:.1} % of the work so far and more than the \
-             size of the step explains: {why}. {}; otherwise what follows is one of several states that are possible after the jump",
-            number(to),
+             size of the step explains: {why}. {remedy}; otherwise what follows is one of several states that are possible after the \
+             jump",
+            number(time),
             self.lost.abs(),
-            100.0 * self.part,
-            smoother(model, from)
+            100.0 * self.part
         )
     }
+
     /// The same of a step with friction that was solved from a softened penalty and lost some, and whose size may explain it.
     pub(super) fn rubbed(&self, model: &Model, (step, [from, to]): (u32, [f64; 2])) -> String {
         format!(
