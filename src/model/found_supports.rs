@@ -1,5 +1,6 @@
 //! Supports that hold a body without straining it: as many degrees of freedom as it has rigid motions left, at three nodes far from
 //! each other (the 3-2-1 principle of location). Being statically determinate, they carry nothing where no force acts on the body.
+//! Bodies that stay in contact are held side by side, so that what one does between its supports the other may do, too.
 use super::Model;
 use super::free_motion::{Frame, free_motions, held_rows};
 use crate::system::{Dof, Link};
@@ -20,26 +21,35 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
         }
     }
     let may = |dof: u32| model.dofs.dof(dof as usize) == Dof::Free && !targets[dof as usize];
-    let mut out = Vec::new();
+    let mut out: Vec<u32> = Vec::new();
+    let mut placed: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
     for free in free_motions(model) {
-        let Some(body) = model.bodies.iter().find(|b| b.name == free.body) else {
+        let Some(index) = model.bodies.iter().position(|b| b.name == free.body) else {
             continue;
         };
+        let body = &model.bodies[index];
         let position = |n: u32| model.position(n as usize, u);
         let frame = Frame::new(free.nodes.iter().map(|n| position(*n)));
         let own = |n: u32| free.nodes.binary_search(&n).is_ok();
         let mut held = Held::default();
         held_rows(model, body, &frame, own, position, |row| held.add(row));
-        let dofs = |n: u32| (0..3).map(move |c| 3 * n + c);
+        let dofs = |n: &u32| (0..3).map(|c| 3 * n + c).collect::<Vec<_>>();
         let whole: Vec<u32> = (free.nodes.iter().copied())
-            .filter(|n| dofs(*n).all(may))
+            .filter(|n| dofs(n).into_iter().all(may))
             .collect();
-        let anchors = anchors(&whole, position);
+        let beside = (placed.iter())
+            .filter(|(other, _)| meet(model, index, *other))
+            .flat_map(|(_, held)| out[held.clone()].iter())
+            .filter_map(|dof| Some(3 * nearest(&whole, dof / 3, position)? + dof % 3))
+            .collect();
+        let anchors = anchors(&whole, position).iter().flat_map(dofs).collect();
         // Where the three nodes do not do, all others may help.
-        for nodes in [&anchors[..], &free.nodes[..]] {
+        let all = free.nodes.iter().flat_map(dofs).collect();
+        let first = out.len();
+        let candidates: [Vec<u32>; 3] = [beside, anchors, all];
+        for dofs in &candidates {
             loop {
-                let best = (nodes.iter())
-                    .flat_map(|n| dofs(*n))
+                let best = (dofs.iter().copied())
                     .filter(|dof| may(*dof) && !out.contains(dof))
                     .map(|dof| {
                         (
@@ -57,9 +67,26 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
                 }
             }
         }
+        placed.push((index, first..out.len()));
     }
     out.sort_unstable();
     out
+}
+
+/// Whether a contact that acts is one between these two bodies.
+fn meet(model: &Model, a: usize, b: usize) -> bool {
+    let acting = model.pairs.iter().filter(|p| !p.points.is_empty());
+    let bodies = acting.filter_map(|p| Some((p.body, p.body_master()?.body)));
+    a != b
+        && bodies
+            .into_iter()
+            .any(|pair| pair == (a, b) || pair == (b, a))
+}
+
+/// The node nearest to another one.
+fn nearest(nodes: &[u32], to: u32, position: impl Fn(u32) -> Vec3) -> Option<u32> {
+    let distance = |n: &u32| (position(*n) - position(to)).norm_squared();
+    (nodes.iter().copied()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
 /// An orthonormal basis of the rows that are held.

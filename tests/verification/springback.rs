@@ -192,6 +192,60 @@ fn both_ways_of_release_leave_the_same_shape() {
     }
 }
 
+/// Two sheets that are bent together and stay in contact when their tools are let go: what holds one must not hold the other by another
+/// place, or both would clamp each other in the shape that they have. They come back as they do where the tools go back, which
+/// needs no supports to be found.
+#[test]
+fn sheets_that_stay_in_contact_spring_back_together() {
+    let cylinder = |r: f64, x: f64, z: f64| json!({ "cylinder": { "radius": r, "length": 20, "center": [x, 1.5, z], "axis": [0, 1, 0] } });
+    let sheet = |t: f64, z: f64, elements: u32| {
+        json!({
+            "mesh": { "plate": { "size": [40, 3], "thickness": t, "elements": [elements, 1], "origin": [0, 0, z] } },
+            "material": "steel"
+        })
+    };
+    let springback = |free: Value| {
+        let scene = json!({
+            "covact": 1,
+            "materials": { "steel": { "j2": {
+                "E": 206000, "nu": 0.3, "hardening": { "swift": { "strength": 565, "offset": 0.0071, "exponent": 0.26 } }
+            } } },
+            "bodies": { "up": sheet(0.8, 0.4, 28), "low": sheet(1.2, -0.6, 24) },
+            "surfaces": { "punch": cylinder(8.0, 0.0, 8.8), "roller": cylinder(5.0, 25.0, -6.2) },
+            "contacts": {
+                "above": { "slave": "up.top", "master": "punch" },
+                "between": { "slave": "up.bottom", "master": "low.top" },
+                "below": { "slave": "low.bottom", "master": "roller" }
+            },
+            "supports": {
+                "middle": { "on": ["up.x_min", "low.x_min"], "symmetry": "x" }, "sides": { "on": ["up", "low"], "symmetry": "y" }
+            },
+            "probes": {
+                "tip": { "near": [40, 1.5, -0.6], "body": "low" }, "middle": { "near": [0, 1.5, -0.6], "body": "low" }
+            },
+            "stages": [{ "name": "bend", "until": 1, "tools": { "punch": [0, 0, -6] } }, free],
+            "solution": { "end_time": 1.5 },
+            "output": { "every": 0 }
+        });
+        let mut run = simulation(&scene);
+        let bow = |run: &Simulation| {
+            let [tip, middle] = ["tip", "middle"].map(|p| run.value(&format!("probe.{p}.z")));
+            tip.expect("a column") - middle.expect("a column")
+        };
+        to(&mut run, 1.0);
+        let bent = bow(&run);
+        to(&mut run, 1.5);
+        let stages = run.summary().stages;
+        (bent - bow(&run), stages[1].reaction / stages[1].force)
+    };
+    let (kept, reaction) =
+        springback(json!({ "name": "free", "contacts": ["between"], "release": "forces" }));
+    let (expected, _) = springback(json!({ "name": "free", "release": "tools" }));
+    println!("springback {kept} with the contact kept, {expected} by tools; supports {reaction}");
+    assert!(expected > 0.5);
+    assert!((kept / expected - 1.0).abs() < 0.05);
+}
+
 /// A strip that is bent between a punch and a roller, with friction, and let go by taking the punch back the way it came. The punch has
 /// left after the first step, so that nothing is left to carry: neither at the roller nor anywhere else. The automatic penalty of the
 /// punch is lowered at the end of the first stage; what that changes is no force that acts in the second.
