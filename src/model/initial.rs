@@ -247,7 +247,11 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             ),
             false => format!("contact `{name}`: at the start none of its {points} points has the other side in front of it"),
         });
-        let limit = 0.5 * pair.element_size;
+        let (limit, beyond) = match choice(scene, pair) {
+            // A fit is meant.
+            InitialOverclosure::Shrink { .. } => (pair.master.depth(model), "its `depth`"),
+            _ => (0.5 * pair.element_size, "half an element"),
+        };
         if gap.smallest < -limit {
             let (pointer, start, help) = match &pair.master {
                 Master::Rigid(surface) => (
@@ -268,7 +272,7 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
             return Err(text(
                 pointer,
                 format!(
-                    "{start} {} {deep} body `{}` (contact `{}`), more than half an element, {}",
+                    "{start} {} {deep} body `{}` (contact `{}`), more than {beyond}, {}",
                     number(-gap.smallest),
                     model.bodies[pair.body].name,
                     pair.name,

@@ -119,6 +119,8 @@ pub struct Ruled {
     pub stiffest: f64,
     /// Penetration above which it is raised whatever the error of forces (length).
     pub deepest: f64,
+    /// Half of the layer of elements behind the points: what lies deeper under it is told (length).
+    pub half: f64,
 }
 
 /// Part of the depth of an element layer, or of its edges where they are shorter, that a point may sink in under a ruled
@@ -147,6 +149,11 @@ pub struct Suitable {
 }
 
 impl Suitable {
+    /// Half of the layer of elements that [`Self::deepest`] is a part of (length).
+    pub fn half_of_layer(&self) -> f64 {
+        0.5 / DEEPEST * self.deepest
+    }
+
     /// Of faces of a body.
     pub fn new(material: &Material, size: &FaceSize) -> Self {
         let solid = modulus(material) * size.penalties()[0];

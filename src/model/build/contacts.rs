@@ -296,6 +296,7 @@ impl Builder<'_> {
                     accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),
                     stiffest: suits.stiffest,
                     deepest,
+                    half: suits.half_of_layer(),
                 };
                 let master = match &master {
                     Master::Body(master) => Some(master.body),

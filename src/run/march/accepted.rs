@@ -15,8 +15,6 @@ use crate::solve::event::Event;
 use crate::solve::newton::{Converged, RigidLimit};
 use crate::system::linear::Method;
 
-/// Penetration, over the one from which on a penalty is raised whatever else, above which it is told: half of an element's layer.
-const SUNK: f64 = 5.0;
 /// Part of all works so far below which that of a step is rounding.
 const NOTHING: f64 = 1e-6;
 
@@ -124,9 +122,11 @@ impl March<'_, '_> {
             return;
         }
         for (pair, sunk) in self.model.pairs.iter().zip(&errors.sunk) {
-            let Some(ruled) = pair.ruled.filter(|_| *sunk > SUNK) else {
+            let Some(ruled) = pair.ruled else { continue };
+            let depth = sunk * ruled.deepest;
+            if depth <= ruled.half {
                 continue;
-            };
+            }
             let head = format!("contact `{}`: its points lie ", pair.name);
             if self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
                 continue;
@@ -135,7 +135,7 @@ impl March<'_, '_> {
                 "{head}{} deep in {} at step {} (time {}), more than half of an element's layer, under the softest penalty that the \
                  step could be solved with: what contact carries there may be wrong, or belong to a path that jumps. Take a smaller \
                  `solution.step.max`, or drive by what keeps the forces growing",
-                number(sunk * ruled.deepest),
+                number(depth),
                 pair.master_words(self.model),
                 self.progress.steps,
                 number(self.progress.time)

@@ -107,7 +107,7 @@ fn kept(safe: &Safe, former: &Former, [time, part]: [f64; 2]) -> Option<Safe> {
     }
     kept.kept.extend(former.bodies.iter().cloned());
     kept.changed.push(format!(
-        "body {}: its default elements (`h8`) gave way at time {}, as they do in strong compression, {KEPT} with \
+        "body {}: its default elements (`h8`) gave way at time {}, as they do under large strains, {KEPT} with \
          `h8_mean_dilatation` the strain energy at time {}, before that, is {:.0} % other; {SO}. Refine it",
         listed(&former.bodies),
         number(former.end()),

@@ -84,7 +84,7 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     }
     *element = Element::H8MeanDilatation;
     safe.changed.push(format!(
-        "body `{body}`: its default elements (`h8`) {when}, as they do in strong compression; the run was repeated with \
+        "body `{body}`: its default elements (`h8`) {when}, as they do under large strains; the run was repeated with \
          `h8_mean_dilatation` for it, which bends less well: refine it where it bends, and name the `element` to have one of them \
          from the start"
     ));
