@@ -79,6 +79,30 @@ fn an_interference_shrunk_in_ends_as_the_closed_form_and_as_the_same_fit_by_disp
     }
 }
 
+/// A fit that is asked for may be deeper than half of an element, which is 1 wide. What is not asked for is refused there: such a surface
+/// stands where it does not belong.
+#[test]
+fn a_fit_may_be_deeper_than_half_an_element() {
+    let d = 0.6;
+    let shrunk = run(&pressed(json!({ "shrink": { "until": 0.75 } }), d));
+    let force = shrunk.at("force.plane.z", 1.0);
+    let exact = uniform(d - shrunk.at("penetration.max", 1.0));
+    assert!(
+        (force / -exact - 1.0).abs() < 1e-9,
+        "{force} for {}",
+        -exact
+    );
+    let text = pressed(json!("strain"), d).to_string();
+    let loaded = covact::scene::parse(&text, "fit.json").expect("a scene");
+    let refused = covact::model::build::build(&loaded).expect_err("deeper than half an element");
+    assert!(
+        refused
+            .to_string()
+            .contains("more than half an element, 0.5"),
+        "{refused}"
+    );
+}
+
 #[test]
 fn what_counts_as_touching_is_not_stressed_and_presses_from_there_on() {
     let still = run(&pressed(json!("stress_free"), 0.2));
