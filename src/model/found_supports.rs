@@ -23,7 +23,10 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
     let may = |dof: u32| model.dofs.dof(dof as usize) == Dof::Free && !targets[dof as usize];
     let mut out: Vec<u32> = Vec::new();
     let mut placed: Vec<(usize, std::ops::Range<usize>)> = Vec::new();
-    for free in free_motions(model) {
+    let mut all = free_motions(model);
+    // Small ones first: larger ones that they touch have nodes beside theirs.
+    all.sort_by(|a, b| size(model, &a.nodes, u).total_cmp(&size(model, &b.nodes, u)));
+    for free in all {
         let Some(index) = model.bodies.iter().position(|b| b.name == free.body) else {
             continue;
         };
@@ -37,10 +40,15 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
         let whole: Vec<u32> = (free.nodes.iter().copied())
             .filter(|n| dofs(n).into_iter().all(may))
             .collect();
+        let near = if whole.is_empty() {
+            &free.nodes
+        } else {
+            &whole
+        };
         let beside = (placed.iter())
             .filter(|(other, _)| meet(model, index, *other))
             .flat_map(|(_, held)| out[held.clone()].iter())
-            .filter_map(|dof| Some(3 * nearest(&whole, dof / 3, position)? + dof % 3))
+            .filter_map(|dof| Some(3 * nearest(near, dof / 3, position)? + dof % 3))
             .collect();
         let anchors = anchors(&whole, position).iter().flat_map(dofs).collect();
         // Where the three nodes do not do, all others may help.
@@ -71,6 +79,16 @@ pub fn find(model: &Model, u: &[f64]) -> Vec<u32> {
     }
     out.sort_unstable();
     out
+}
+
+/// The longest side of the box around nodes.
+fn size(model: &Model, nodes: &[u32], u: &[f64]) -> f64 {
+    let place = |n: &u32| model.position(*n as usize, u);
+    let (low, high) = nodes.iter().map(place).fold(
+        (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY)),
+        |(low, high), x| (low.inf(&x), high.sup(&x)),
+    );
+    (high - low).max()
 }
 
 /// Whether a contact that acts is one between these two bodies.

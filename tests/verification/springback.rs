@@ -192,15 +192,15 @@ fn both_ways_of_release_leave_the_same_shape() {
     }
 }
 
-/// Two sheets that are bent together and stay in contact when their tools are let go: what holds one must not hold the other by another
-/// place, or both would clamp each other in the shape that they have. They come back as they do where the tools go back, which
+/// Two sheets of different lengths that are bent together and stay in contact when their tools are let go: what holds one must not hold
+/// the other by another place, or both would clamp each other in the shape that they have. They come back as they do where the tools go back, which
 /// needs no supports to be found.
 #[test]
 fn sheets_that_stay_in_contact_spring_back_together() {
     let cylinder = |r: f64, x: f64, z: f64| json!({ "cylinder": { "radius": r, "length": 20, "center": [x, 1.5, z], "axis": [0, 1, 0] } });
-    let sheet = |t: f64, z: f64, elements: u32| {
+    let sheet = |t: f64, z: f64, (length, elements): (f64, u32)| {
         json!({
-            "mesh": { "plate": { "size": [40, 3], "thickness": t, "elements": [elements, 1], "origin": [0, 0, z] } },
+            "mesh": { "plate": { "size": [length, 3], "thickness": t, "elements": [elements, 2], "origin": [0, 0, z] } },
             "material": "steel"
         })
     };
@@ -210,7 +210,7 @@ fn sheets_that_stay_in_contact_spring_back_together() {
             "materials": { "steel": { "j2": {
                 "E": 206000, "nu": 0.3, "hardening": { "swift": { "strength": 565, "offset": 0.0071, "exponent": 0.26 } }
             } } },
-            "bodies": { "up": sheet(0.8, 0.4, 28), "low": sheet(1.2, -0.6, 24) },
+            "bodies": { "up": sheet(0.8, 0.4, (32.0, 20)), "low": sheet(1.2, -0.6, (40.0, 24)) },
             "surfaces": { "punch": cylinder(8.0, 0.0, 8.8), "roller": cylinder(5.0, 25.0, -6.2) },
             "contacts": {
                 "above": { "slave": "up.top", "master": "punch" },
