@@ -92,6 +92,8 @@ pub(super) struct Habit {
     pub searched: Account,
     /// Starts from a softened penalty.
     pub softened: Account,
+    /// Starts from the last accepted state without mixed integration points, where those with them have failed.
+    pub plain: Account,
 }
 
 impl Habit {
@@ -107,6 +109,7 @@ impl Habit {
             &mut self.accepted,
             &mut self.searched,
             &mut self.softened,
+            &mut self.plain,
         ] {
             account.ended();
         }
@@ -120,10 +123,11 @@ impl Habit {
             accepted,
             searched,
             softened,
+            plain,
         } = self;
         out.bool(*hold);
         out.bool(*search);
-        for account in [path, accepted, searched, softened] {
+        for account in [path, accepted, searched, softened, plain] {
             account.put(out);
         }
     }
@@ -136,6 +140,7 @@ impl Habit {
             accepted: Account::take(from)?,
             searched: Account::take(from)?,
             softened: Account::take(from)?,
+            plain: Account::take(from)?,
         })
     }
 }
