@@ -138,7 +138,7 @@ fn first_touch_flush(trial: &mut Trial) -> Result<(), CaseError> {
 }
 
 fn slides_off(trial: &mut Trial) -> Result<(), CaseError> {
-    trial.iterations(250);
+    trial.iterations(300);
     let outcome = trial.solve(&pulled(6.0))?;
     let status = outcome.summary.status.name();
     trial.holds("ends early", status == "not_converged");

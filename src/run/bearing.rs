@@ -44,6 +44,8 @@ pub struct Bearing {
     pub force: f64,
     /// Area of the points in contact.
     pub area: f64,
+    /// Sum of pressure times force: over the force, the pressure under which it is carried on average (force^2 / length^2).
+    pub squared: f64,
     /// The part of it near sharp convex edges of the master (force).
     pub at_edges: f64,
     /// The point that carries most of that part.
@@ -246,6 +248,7 @@ impl Bearings {
             _ => sum.rank(force),
         }
         sum.area += area;
+        sum.squared += force * pressure;
         let energy = 0.5 * share * (force * gap).abs();
         let Some(place) = place else {
             sum.energy += energy;

@@ -92,8 +92,6 @@ pub(super) struct Habit {
     pub searched: Account,
     /// Starts from a softened penalty.
     pub softened: Account,
-    /// Starts from the last accepted state without mixed integration points, where those with them have failed.
-    pub plain: Account,
 }
 
 impl Habit {
@@ -109,7 +107,6 @@ impl Habit {
             &mut self.accepted,
             &mut self.searched,
             &mut self.softened,
-            &mut self.plain,
         ] {
             account.ended();
         }
@@ -123,11 +120,10 @@ impl Habit {
             accepted,
             searched,
             softened,
-            plain,
         } = self;
         out.bool(*hold);
         out.bool(*search);
-        for account in [path, accepted, searched, softened, plain] {
+        for account in [path, accepted, searched, softened] {
             account.put(out);
         }
     }
@@ -140,7 +136,6 @@ impl Habit {
             accepted: Account::take(from)?,
             searched: Account::take(from)?,
             softened: Account::take(from)?,
-            plain: Account::take(from)?,
         })
     }
 }

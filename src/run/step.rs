@@ -4,11 +4,11 @@
 //!    iterations.
 //!    Points that were in contact and that it takes off a surface are kept in contact by the first linearisation:
 //!    where the path fails as it is, and in the steps after one that needed it.
-//! 2. The last accepted state. With friction the first linearisations take secants. Points are kept in contact in the first
-//!    iterations where the first correction opens most of them.
-//! 3. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
+//! 2. The last accepted state under a soft penalty that is stiffened in stages. A flat tool on a flat sheet touches at
 //!    hundreds of points of which a handful stay: under a stiff penalty the points chatter, under a soft one the few
 //!    come out, and each stage starts from nearly the right ones.
+//! 3. The last accepted state as it is, which comes before the soft penalty where there is no path yet. With friction the first
+//!    linearisations take secants. Points are kept in contact in the first iterations where the first correction opens most of them.
 //! 4. The last accepted state, searching along every increment: a strip that snaps from one support to the next is thrown far by
 //!    a full step. It is tried where a step has been cut, before the softened penalty where that has cost more
 //!    ([`super::habit`]), and goes on in the steps after one that it has solved, until one fails. Where a material flows all starts
@@ -177,6 +177,8 @@ impl Attempts<'_, '_> {
             false => Patience::Long,
         };
         let mut result = Err(StepFailure::Interrupted);
+        // What stopped the softened penalty says why a step cannot be solved; what stopped others may be how far they were from it.
+        let mut of_softened = None;
         for (i, start) in starts.iter().enumerate() {
             if let (false, Err(failure)) = (i == 0, &result) {
                 self.again(step, start.words(), failure, penalties);
@@ -185,7 +187,7 @@ impl Attempts<'_, '_> {
             result = self.started(*start, at, (before, patience(i)), trial, penalties);
             if let (Start::Accepted, true, Err(failure)) = (start, self.was_mixed, &result)
                 && another(failure)
-                && !self.put_off(Start::Plain)
+                && !touching
             {
                 self.again(step, Start::Plain.words(), failure, penalties);
                 result = self.started(Start::Plain, at, (before, patience(i)), trial, penalties);
@@ -193,9 +195,15 @@ impl Attempts<'_, '_> {
             if !result.as_ref().is_err_and(another) {
                 break;
             }
+            if let (Start::Softened, Err(failure)) = (start, &result) {
+                of_softened = Some(failure.clone());
+            }
         }
         self.habit.ended();
-        result
+        match (result, of_softened) {
+            (Err(failure), Some(softened)) if another(&failure) => Err(softened),
+            (result, _) => result,
+        }
     }
 
     /// Solves from the path continued, as it is or with the points kept that it opens.
@@ -271,8 +279,7 @@ impl Attempts<'_, '_> {
         }
         let account = match start {
             Start::Path => &mut self.habit.path,
-            Start::Accepted => &mut self.habit.accepted,
-            Start::Plain => &mut self.habit.plain,
+            Start::Accepted | Start::Plain => &mut self.habit.accepted,
             Start::Searched => &mut self.habit.searched,
             Start::Softened => &mut self.habit.softened,
         };

@@ -107,8 +107,9 @@ impl March<'_, '_> {
             let raised = (*ratio * factor).min(stiffest(pair, friction, *eps_n));
             if raised > *ratio {
                 *ratio = raised;
-            } else if struggles && bearing.area > 0.0 {
-                let pressure = bearing.force / bearing.area;
+            } else if struggles && bearing.force > 0.0 {
+                // That under which friction is carried: the mean over a wide holder says nothing of the edge that a sheet is drawn over.
+                let pressure = bearing.squared / bearing.force;
                 let suits = friction.suitable(pressure, *eps_n, pair.element_size, time)?;
                 *ratio = suits.map_or(*ratio, |suits| suits.max(SOFTER * *ratio));
             }

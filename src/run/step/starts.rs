@@ -12,7 +12,7 @@ pub(super) enum Start {
     /// The path, continued.
     Path,
     Accepted,
-    /// Without mixed integration points.
+    /// The same without mixed integration points, where nothing is in contact: with contact it has solved 2 of 383 steps.
     Plain,
     Searched,
     Softened,
@@ -42,24 +42,32 @@ impl Attempts<'_, '_> {
     /// The starts of a step in their order; there is a path or not.
     pub(super) fn starts(&self, path: bool, touching: bool) -> Vec<Start> {
         let searched = self.habit.search;
+        let softens = touching && !self.put_off(Start::Softened);
+        // Where the path fails, what lies behind the last step is seldom much nearer: of 430 runs softened penalties then solved half
+        // of the steps, starts from the last accepted state a fifth.
+        let sooner = path && softens && !searched;
         let mut starts = Vec::with_capacity(4);
         if path {
             starts.push(Start::Path);
+        }
+        if sooner {
+            starts.push(Start::Softened);
         }
         if searched {
             starts.push(Start::Searched);
         } else if !path || !self.put_off(Start::Accepted) {
             starts.push(Start::Accepted);
         }
-        if touching && !self.put_off(Start::Softened) {
+        if softens && !sooner {
             starts.push(Start::Softened);
         }
         // A step that was cut is near enough to the path that a search is unlikely to leave it for another equilibrium.
         let searches = self.settings.line_search && self.habit.may_search();
         if self.cuts > 0 && !searched && searches && !self.model.flows() {
-            let softened = starts.last() == Some(&Start::Softened);
-            let first = softened && self.habit.searched.price() < self.habit.softened.price();
-            starts.insert(starts.len() - usize::from(first), Start::Searched);
+            let cheaper = self.habit.searched.price() < self.habit.softened.price();
+            let softened = starts.iter().position(|s| *s == Start::Softened);
+            let at = softened.filter(|_| cheaper).unwrap_or(starts.len());
+            starts.insert(at, Start::Searched);
         }
         if self.put_off(starts[0])
             && let Some(cheapest) = (1..starts.len())
@@ -83,8 +91,7 @@ impl Attempts<'_, '_> {
     pub(super) fn account(&self, start: Start) -> &Account {
         match start {
             Start::Path => &self.habit.path,
-            Start::Accepted => &self.habit.accepted,
-            Start::Plain => &self.habit.plain,
+            Start::Accepted | Start::Plain => &self.habit.accepted,
             Start::Searched => &self.habit.searched,
             Start::Softened => &self.habit.softened,
         }

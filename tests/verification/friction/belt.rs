@@ -26,7 +26,8 @@ const E: f64 = 500.0;
 /// Force that pulls the pulleys apart, and moment on the driven one.
 const FORCE: f64 = 40.0;
 const MOMENT: f64 = 30.0;
-const ELEMENTS: usize = 120;
+/// What comes on a pulley and leaves it does so by whole elements: on 100 to 140 of them the creep is 1 to 6 % too small.
+const ELEMENTS: usize = 140;
 
 /// The belt, as an Abaqus file of one row of bricks: straight above from the first pulley to the second one, round it, and back.
 fn belt() -> String {
