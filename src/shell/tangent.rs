@@ -124,18 +124,20 @@ pub(super) fn condense<const NE: usize, const P: usize>(
         let mut h = [0.0; NE];
         for m in 0..NE {
             packed[m * (m + 1) / 2..][..=m].copy_from_slice(&d[m][..=m]);
-            h[m] = force[TYING + m];
+            let (mut below, mut row) = (force[TYING + m], l[m]);
             for n in 0..m {
-                h[m] -= d[m][n] * h[n];
-                let (head, tail) = l.split_at_mut(m);
+                below -= d[m][n] * h[n];
                 for r in 0..24 {
-                    tail[0][r] -= d[m][n] * head[n][r];
+                    row[r] -= d[m][n] * l[n][r];
                 }
             }
+            // Written once: updated in place, rustc 1.95 (x86-64, optimised) takes rows of `l` from before their own updates where
+            // there are three of them.
+            (h[m], l[m]) = (below, row);
             let inverse = d[m][m].recip();
             for r in 0..24 {
-                scaled[m][r] = l[m][r] * inverse;
-                f[r] -= scaled[m][r] * h[m];
+                scaled[m][r] = row[r] * inverse;
+                f[r] -= scaled[m][r] * below;
             }
         }
     }
