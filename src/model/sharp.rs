@@ -1,4 +1,4 @@
-//! Sharp convex edges of rigid surfaces. Slave points see such an edge only where one of them happens to lie on it: between
+//! Sharp convex edges and tips of rigid surfaces. Slave points see such an edge only where one of them happens to lie on it: between
 //! two points it sinks into the slave's faces, and what it carries depends on the mesh.
 use super::error::number;
 use super::{Model, PairModel, SurfaceModel};
@@ -45,24 +45,27 @@ impl Lines {
     }
 }
 
-/// Sharp convex edges of a surface, in its own coordinates.
+/// Sharp convex edges and tips of a surface, in its own coordinates.
 #[derive(Debug)]
 pub struct SharpEdges {
-    /// Lines that follow them.
+    /// Lines that follow them; of no length at tips.
     lines: Lines,
     /// Number of edges; that of two patches is one.
     pub count: usize,
-    /// Largest angle between the normals of both sides (degrees).
+    /// Number of tips.
+    pub tips: usize,
+    /// Largest angle between the normals of both sides of an edge, or of those around a tip (degrees).
     pub angle: f64,
 }
 
 impl SharpEdges {
-    /// The sharp convex edges of a surface; none where it has none.
+    /// The sharp convex edges and tips of a surface; none where it has none.
     pub fn of(surface: &SurfaceModel) -> Option<SharpEdges> {
         let found = with_patches!(&surface.set, set => set.sharp_edges(ANGLE));
         let mut edges = SharpEdges {
             lines: Lines(vec![Vec::new(); surface.set.count()]),
             count: 0,
+            tips: 0,
             angle: 0.0,
         };
         let mut halves = 0usize;
@@ -72,7 +75,14 @@ impl SharpEdges {
             halves += 1;
         }
         edges.count = halves.div_ceil(2);
-        (halves > 0).then_some(edges)
+        for tip in with_patches!(&surface.set, set => set.tips(ANGLE)) {
+            for patch in &tip.patches {
+                edges.lines.add(*patch, &[tip.x, tip.x]);
+            }
+            edges.angle = edges.angle.max(tip.angle().to_degrees());
+            edges.tips += 1;
+        }
+        (edges.count + edges.tips > 0).then_some(edges)
     }
 
     /// Whether a point of a patch lies within `reach` of one of its sharp convex edges; `x` in the surface's coordinates.
@@ -80,13 +90,21 @@ impl SharpEdges {
         self.lines.near(patch, x, reach)
     }
 
+    /// What they are: "2 sharp convex edge(s)".
+    fn words(&self) -> String {
+        match (self.count, self.tips) {
+            (edges, 0) => format!("{edges} sharp convex edge(s)"),
+            (0, tips) => format!("{tips} sharp tip(s)"),
+            (edges, tips) => format!("{edges} sharp convex edge(s) and {tips} sharp tip(s)"),
+        }
+    }
+
     /// What `check` notes of a contact with the surface whose slave points are `spacing` apart.
     pub fn note(&self, contact: &str, surface: &str, spacing: f64) -> String {
         format!(
-            "contact `{contact}`: surface `{surface}` has {} sharp convex edge(s), of up to {:.0} degrees; where the slave is \
-             bent around one, forces depend on where its points (about {} apart) happen to lie: a rounding of at least \
-             {} does not",
-            self.count,
+            "contact `{contact}`: surface `{surface}` has {}, of up to {:.0} degrees; where the slave is bent around one, forces \
+             depend on where its points (about {} apart) happen to lie: a rounding of at least {} does not",
+            self.words(),
             self.angle,
             number(spacing),
             number(2.0 * spacing)

@@ -11,7 +11,7 @@ use crate::output::ContactAccuracy;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use covact_geometry::Vec3;
 
-/// Part of a force at sharp convex edges above which the user is warned.
+/// Part of a force at sharp convex edges and tips above which the user is warned.
 const AT_EDGES: f64 = 0.1;
 
 /// Part of the largest force of all contacts below which that of one is rounding.
@@ -315,8 +315,8 @@ impl Peak {
         (self.at_edges > AT_EDGES * self.force).then(|| {
             format!(
                 "contact `{}`: {:.0} % of its force at step {} acts within one spacing of slave points ({}) of sharp convex edges \
-                 of {}: force and pressure there depend on where the points happen to lie, and may move by many per cent with \
-                 the mesh. Round the edges with a radius of at least {}, or refine the slave there and compare",
+                 or tips of {}: force and pressure there depend on where the points happen to lie, and may move by many per cent \
+                 with the mesh. Round them with a radius of at least {}, or refine the slave there and compare",
                 pair.name,
                 100.0 * self.at_edges / self.force,
                 self.step,

@@ -67,7 +67,7 @@ fn a_sharp_edge_between_slave_points_is_warned_of() {
     for outcome in &outcomes {
         let told = told(
             &outcome.summary.warnings,
-            "sharp convex edges of surface `box`",
+            "sharp convex edges or tips of surface `box`",
         );
         assert_eq!(told.len(), 1, "{:?}", outcome.summary.warnings);
         let share = outcome.summary.accuracy.contacts[0].edge_share;

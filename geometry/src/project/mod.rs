@@ -31,6 +31,7 @@ mod sharp;
 mod sides;
 mod subdivide;
 mod ties;
+mod tips;
 pub(crate) mod topology;
 pub(crate) mod tree;
 mod trimmed;
@@ -46,6 +47,7 @@ pub use separation::{Separation, SeparationError};
 pub use set::{Joining, PatchSet, PatchSetError};
 pub use sharp::{Rim, RimPoint, SharpEdge};
 pub use sides::{ComponentSide, SideError, SideOutcome};
+pub use tips::Tip;
 pub use topology::{Border, EdgeReport, Gap, Joint, Overlap, PartialJoint};
 
 use crate::surface::{Jet, Vec3};

@@ -21,14 +21,15 @@ pub struct SharpEdge {
     pub convex: bool,
 }
 
-/// A line along which a surface ends, or turns away from what it faces: a free border or a sharp convex edge.
+/// A line along which a surface ends, or turns away from what it faces: a free border or a sharp convex edge. A sharp tip is one of no
+/// length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rim {
     /// Number of the patch; of an edge that two patches share that of one of them.
     pub patch: u32,
     /// Points on the line, in the middle of pieces of equal length; at least one.
     pub points: Vec<RimPoint>,
-    /// Length of a piece.
+    /// Length of a piece; of a tip that which was asked for.
     pub piece: f64,
     /// Whether the surface ends here.
     pub free: bool,
@@ -39,16 +40,16 @@ pub struct Rim {
 pub struct RimPoint {
     /// Where it lies.
     pub x: Vec3,
-    /// A tangent of the line.
+    /// A tangent of the line; zero at a tip.
     pub along: Vec3,
-    /// Outward unit normals on both sides; twice the same on a free border.
+    /// Outward unit normals on both sides; twice the same on a free border, those farthest apart at a tip.
     pub normals: [Vec3; 2],
 }
 
 /// How far the normal turns from one side of a joint to the other.
-struct Turn {
+pub(super) struct Turn {
     /// Largest angle at the places measured (radians).
-    angle: f64,
+    pub angle: f64,
     convex: bool,
 }
 
@@ -97,7 +98,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// Free borders, and convex edges at which the normal turns by more than `angle` (radians) with the present sides, each once,
-    /// as pieces no longer than `spacing` (length). Creases inside a patch are not among them, and neither are poles.
+    /// as pieces no longer than `spacing` (length), and [`tips`](Self::tips). Creases inside a patch are not among them.
     pub fn rims(&self, angle: f64, spacing: f64) -> Vec<Rim> {
         let mut out = Vec::new();
         for (index, edge) in self.topology.edges.iter().enumerate() {
@@ -126,6 +127,16 @@ impl<S: Surface> PatchSet<S> {
                 }
             }
         }
+        out.extend(self.tips(angle).into_iter().map(|tip| Rim {
+            patch: tip.patches[0],
+            points: vec![RimPoint {
+                x: tip.x,
+                along: Vec3::zeros(),
+                normals: tip.normals,
+            }],
+            piece: spacing,
+            free: false,
+        }));
         out
     }
 
@@ -168,7 +179,7 @@ impl<S: Surface> PatchSet<S> {
     }
 
     /// How far the normal turns at a joint of the edge `index`.
-    fn turn(&self, index: usize, link: &Link) -> Turn {
+    pub(super) fn turn(&self, index: usize, link: &Link) -> Turn {
         let edge = &self.topology.edges[index];
         let [start, end] = link.own;
         let at = |part: f64| edge_point(self, edge, start + (end - start) * part);

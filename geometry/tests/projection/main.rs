@@ -3,6 +3,7 @@ mod closest;
 mod common;
 mod curves;
 mod faces;
+mod tips;
 mod topology;
 mod topology_distance;
 mod topology_trimmed;

@@ -182,8 +182,8 @@ pub(super) fn with_rims(
     before: Option<&Safe>,
     time: Option<f64>,
 ) -> Option<Safe> {
-    let text = "while an edge of the surface had sunk into the slave, between its points; it was repeated with such edges as slaves \
-                too (`\"passes\": \"edges\"`; `\"one\"` leaves them out)";
+    let text = "while an edge or a tip of the surface had sunk into the slave, between its points; it was repeated with such edges as \
+                slaves too (`\"passes\": \"edges\"`; `\"one\"` leaves them out)";
     let may = |contact: &Contact| edges_may(scene, contact);
     with_these(scene, before, time, (may, Passes::Edges, text))
 }

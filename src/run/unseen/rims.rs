@@ -51,6 +51,8 @@ pub(in crate::run) struct Sunk {
     pub pair: usize,
     /// The edge may become a slave in another run.
     pub may: bool,
+    /// It is a tip.
+    tip: bool,
     depth: f64,
     at: Vec3,
 }
@@ -106,7 +108,7 @@ impl Watched {
         }
         let pose = model.surfaces[pair.rigid_master()?].pose(time, u).ok()?;
         self.faces.update(|n| model.position(n as usize, u));
-        let mut deepest: Option<(f64, Vec3)> = None;
+        let mut deepest: Option<(f64, Vec3, bool)> = None;
         let mut bent = false;
         for point in &self.points {
             let at = (pose * Point3::from(point.x)).coords;
@@ -118,11 +120,11 @@ impl Watched {
             // The slave is bent around the edge where it is opposed to neither side.
             let opposed = |n: &Vec3| -(pose * n).dot(&foot.normal) > BENT;
             bent |= depth - penetration > NOTHING * self.size && !point.normals.iter().any(opposed);
-            if deepest.is_none_or(|(d, _)| depth > d) {
-                deepest = Some((depth, at));
+            if deepest.is_none_or(|(d, ..)| depth > d) {
+                deepest = Some((depth, at, point.along == Vec3::zeros()));
             }
         }
-        let (depth, at) = deepest?;
+        let (depth, at, tip) = deepest?;
         let way = || {
             let facets = 0..self.faces.len() as u32;
             let nodes = facets.flat_map(|f| self.faces.nodes(f));
@@ -139,6 +141,7 @@ impl Watched {
         sunk.then_some(Sunk {
             pair: self.pair,
             may: self.may,
+            tip,
             depth,
             at,
         })
@@ -188,8 +191,9 @@ impl Sunk {
     pub fn head(&self, model: &Model) -> String {
         let pair = &model.pairs[self.pair];
         format!(
-            "contact `{}`: an edge of {} sinks into `{}` between its slave points",
+            "contact `{}`: {} of {} sinks into `{}` between its slave points",
             pair.name,
+            if self.tip { "a tip" } else { "an edge" },
             pair.master_words(model),
             pair.slave
         )
@@ -198,7 +202,7 @@ impl Sunk {
     /// What the user is told.
     pub fn told(&self, model: &Model, time: f64) -> String {
         format!(
-            "{}, at time {} by {} near ({}, {}, {}): what it carries depends on where these lie. Round the edge, by two of their \
+            "{}, at time {} by {} near ({}, {}, {}): what it carries depends on where these lie. Round it, by two of their \
              spacings at least, or take a finer mesh{}",
             self.head(model),
             number(time),

@@ -187,7 +187,7 @@ pub enum Passes {
     /// Each side in turn, and the traction of a pass acts on its slave alone: no side is preferred, forces balance as far as
     /// both sides find the same gaps (`imbalance` in the history), and the system is unsymmetric.
     TwoHalf,
-    /// The slave, and with it the sharp convex edges of the master and, of a rigid one, its free borders: nodes on them are slave
+    /// The slave, and with it the sharp convex edges of the master and, of a rigid one, its tips and free borders: nodes on them are slave
     /// points too, on the faces of the slave, into which such an edge otherwise sinks between two points.
     Edges,
 }
