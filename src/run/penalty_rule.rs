@@ -73,6 +73,9 @@ impl PairRule {
     };
 }
 
+/// Steps after which what did not serve is still remembered.
+const FOR_GOOD: u32 = u32::MAX / 2;
+
 /// The rule of all pairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PenaltyRule {
@@ -188,6 +191,12 @@ impl PenaltyRule {
                 rule.failed += 1;
             }
         }
+    }
+
+    /// Raises the penalty of a pair no more: a stiffer one is worse for a reason that stays.
+    pub fn keep(&mut self, index: usize, penalty: f64) {
+        let rule = &mut self.pairs[index];
+        (rule.bad, rule.remembered) = (penalty, FOR_GOOD);
     }
 
     /// Whether a raise lowered the errors by enough to be kept.

@@ -258,3 +258,38 @@ fn faces_that_do_not_fit_do_not_jam() {
     let told = |w: &&String| w.contains("its force follows its penalty");
     assert_eq!(outcome.summary.warnings.iter().filter(told).count(), 1);
 }
+
+/// Three leaves that are clamped flush on each other at one end and pressed down: each takes a third of the pressure's force of 2, and
+/// their meshes of 40, 30 and 50 elements do not fit each other where they bend. With corners that press, the clamps pull against
+/// each other with 8 and 10.
+#[test]
+fn a_stack_of_leaves_shares_its_load() {
+    let leaf = |x: usize, z: f64| {
+        let plate =
+            json!({"size": [100, 10], "thickness": 1, "elements": [x, 2], "origin": [0, 0, z]});
+        json!({"mesh": {"plate": plate}, "material": "m"})
+    };
+    let scene = json!({
+        "covact": 1,
+        "materials": {"m": {"st_venant_kirchhoff": {"E": 200000, "nu": 0}}},
+        "bodies": {"a": leaf(40, 0.0), "b": leaf(30, 1.0), "c": leaf(50, 2.0)},
+        "contacts": {
+            "ab": {"slave": "b.bottom", "master": "a.top"},
+            "bc": {"slave": "c.bottom", "master": "b.top"}
+        },
+        "supports": {
+            "of_a": {"on": "a.x_min", "fixed": true},
+            "of_b": {"on": "b.x_min", "fixed": true},
+            "of_c": {"on": "c.x_min", "fixed": true}
+        },
+        "loads": {"p": {"on": "c.top", "pressure": "0.002*t"}},
+        "output": {"every": 0}
+    });
+    let outcome = done(&scene);
+    let forces = ["a", "b", "c"].map(|leaf| outcome.at(&format!("force.of_{leaf}.z"), 1.0));
+    println!("{forces:?}");
+    assert!((forces.iter().sum::<f64>() - 2.0).abs() < 1e-2);
+    assert!(forces.iter().all(|f| (0.3..1.0).contains(f)), "{forces:?}");
+    let told = |w: &&String| w.contains("its force follows its penalty");
+    assert!(outcome.summary.warnings.iter().any(|w| told(&w)));
+}

@@ -1,4 +1,6 @@
 //! A step that is solved, before it is accepted: its histories, its fields, and whether its penalties serve.
+mod corners;
+
 use super::{March, Outputs, RELIABLE, StepControl};
 use crate::assembly::Totals;
 use crate::contact::friction::history::PointHistory;
@@ -40,6 +42,8 @@ struct Tried {
     totals: Totals,
     /// What rigid contact would change there, where that was measured.
     limit: Option<RigidLimit>,
+    /// Points in contact, per pair.
+    active: Vec<usize>,
     /// The raise that led there, where it changed a force by far more than that said; it went out from there itself.
     outran: Option<Box<Tried>>,
 }
@@ -159,27 +163,37 @@ impl<'m> March<'_, 'm> {
             if let Some(mut tried) = tried.take() {
                 let beyond = self.outruns(&tried, &converged.totals);
                 let before = tried.outran.take();
-                let (from, why) = match (beyond, before) {
-                    (Some(index), Some(first)) => {
+                let bearings = &outputs.fields.bearings;
+                let corners = "under a stiffer one faces press on each other with their corners";
+                let parted = self.parted(&tried, &converged.totals, bearings);
+                let mut kept = None;
+                let (from, why) = match (beyond, before, parted) {
+                    (Some(index), Some(first), _) => {
                         self.tell_outrun(index, end, (&first, &converged.totals));
-                        (
-                            Some(*first),
-                            "under a stiffer one faces press on each other with their corners",
-                        )
+                        (Some(*first), corners)
+                    }
+                    (_, _, Some(index)) => {
+                        self.tell_outrun(index, end, (&tried, &converged.totals));
+                        kept = Some(index);
+                        (Some(tried), corners)
                     }
                     _ if !PenaltyRule::helped(&tried.errors, &ruling) => {
                         (Some(tried), "a stiffer one does not lower the error")
                     }
-                    (beyond, _) => {
+                    (beyond, ..) => {
                         outran = beyond.map(|_| Box::new(tried));
                         (None, "")
                     }
                 };
                 if let Some(from) = from {
                     outputs.fields.back(fields);
+                    let penalty = kept.map(|index| (index, from.penalties[index]));
                     match self.back((step, end), (committed, walk), trial, from, why) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),
+                    }
+                    if let Some((index, penalty)) = penalty {
+                        self.rule.keep(index, penalty);
                     }
                     // Where it does not help, half as far would not.
                     raises = 0;
@@ -212,6 +226,8 @@ impl<'m> March<'_, 'm> {
             raises -= 1;
             // Solved again from where it is.
             std::mem::swap(&mut trial.histories, &mut histories);
+            let pairs = outputs.fields.bearings.pairs.iter();
+            let active = pairs.map(|bearing| bearing.active).collect();
             outputs.fields.back(fields);
             let softer = std::mem::replace(&mut self.assembler.penalties, stiffer);
             self.hold_given();
@@ -225,6 +241,7 @@ impl<'m> March<'_, 'm> {
                 errors: ruling,
                 totals: converged.totals.clone(),
                 limit: fresh,
+                active,
                 outran,
             };
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
@@ -243,36 +260,6 @@ impl<'m> March<'_, 'm> {
                 }
             }
         }
-    }
-
-    /// The contact whose penalty was raised and whose force, now of `totals`, has changed by far more than rigid contact would have
-    /// changed it.
-    fn outruns(&self, tried: &Tried, totals: &Totals) -> Option<usize> {
-        let limit = tried.limit.as_ref()?;
-        let index = limit.outrun(self.model, [&tried.totals, totals], tried.outran.is_some())?;
-        (self.assembler.penalties[index] > tried.penalties[index]).then_some(index)
-    }
-
-    /// Tells once of a contact whose force went on to follow its penalty, raise after raise from the first one.
-    fn tell_outrun(&mut self, index: usize, time: f64, (first, totals): (&Tried, &Totals)) {
-        let head = format!(
-            "contact `{}`: its force follows its penalty",
-            self.model.pairs[index].name
-        );
-        if self.progress.warnings.iter().any(|w| w.starts_with(&head)) {
-            return;
-        }
-        let [soft, stiff] =
-            [&first.totals, totals].map(|t| RigidLimit::of_pair(self.model, index, t));
-        self.warn(format!(
-            "{head}: at time {} it is {}, and under one {} times stiffer {}, far more than the first one gives way. Faces of both sides \
-             that do not fit each other where they bend press on each other with their corners. The softer one is kept; meshes that \
-             match there, or finer ones, bring both forces together",
-            number(time),
-            number(soft),
-            number(self.assembler.penalties[index] / first.penalties[index]),
-            number(stiff)
-        ));
     }
 
     /// Tells of a penalty that was raised at the last step alone by how much forces changed there: those of the steps before were
@@ -426,7 +413,11 @@ impl<'m> March<'_, 'm> {
         self.rule.lower(model, &all, iterations, &mut penalties);
         let sum = errors.sum();
         if growth > sum && sum > 0.0 {
-            errors.forces.iter_mut().for_each(|e| *e *= growth / sum);
+            // Of faces whose folds may be corners the energy grows as they part.
+            let pairs = model.pairs.iter().zip(&mut errors.forces);
+            pairs
+                .filter(|(pair, _)| !corners::has_folds(pair))
+                .for_each(|(_, e)| *e *= growth / sum);
             self.rule.raise(model, &errors, false, &mut penalties);
         }
         (self.rule).remember(&last, &self.assembler.penalties, &penalties);
