@@ -200,12 +200,15 @@ impl Peaks {
     /// What the user is warned of at the end of a run.
     pub fn warnings(&self, model: &Model) -> Vec<String> {
         let largest = self.0.iter().fold(0.0f64, |most, p| most.max(p.force));
-        let pairs = model.pairs.iter().zip(&self.0);
+        let pairs = model.pairs.iter().zip(&self.0).enumerate();
         // Shares of what rounding makes of a contact say nothing.
-        let pairs = pairs.filter(|(_, peak)| peak.force > ROUNDING * largest);
-        let of = |(pair, peak): (&PairModel, &Peak)| {
+        let pairs = pairs.filter(|(_, (_, peak))| peak.force > ROUNDING * largest);
+        let of = |(index, (pair, peak)): (usize, (&PairModel, &Peak))| {
+            // What edges bear as slaves they bear where they are.
+            let mut edges = model.pairs.iter().zip(&self.0);
+            let edges = edges.find(|(other, _)| other.edges_of == Some(index));
             [
-                peak.at_edges(model, pair),
+                peak.at_edges(model, pair, edges.map_or(0.0, |(_, edges)| edges.force)),
                 peak.prescribed(model, pair),
                 peak.unbalanced(pair),
             ]
@@ -310,9 +313,10 @@ impl Peaks {
 }
 
 impl Peak {
-    fn at_edges(&self, model: &Model, pair: &PairModel) -> Option<String> {
+    /// A warning of what acts at edges; `as_slaves` is what these bear as slaves themselves at most (force).
+    fn at_edges(&self, model: &Model, pair: &PairModel, as_slaves: f64) -> Option<String> {
         let spacing = sharp::spacing(model, pair);
-        (self.at_edges > AT_EDGES * self.force).then(|| {
+        (self.at_edges > AT_EDGES * (self.force + as_slaves)).then(|| {
             format!(
                 "contact `{}`: {:.0} % of its force at step {} acts within one spacing of slave points ({}) of sharp convex edges \
                  or tips of {}: force and pressure there depend on where the points happen to lie, and may move by many per cent \

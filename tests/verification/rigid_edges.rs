@@ -338,11 +338,10 @@ fn the_tip_of_a_cone_presses_wherever_it_meets_the_mesh() {
         println!("at {at:?}: ({x}, {y}, {z}) of {exact}");
         assert!((-z / exact - 1.0).abs() < off, "{at:?}: {z} of {exact}");
         assert!(x.hypot(y) < 2e-3 * exact, "{at:?}: {x} {y}");
-        assert!(
-            !warned(&outcome, "too coarse"),
-            "{:?}",
-            outcome.summary.warnings
-        );
+        // What the tip bears it bears where it is, wherever the points of the plate lie.
+        for words in ["too coarse", "of its force at step"] {
+            assert!(!warned(&outcome, words), "{:?}", outcome.summary.warnings);
+        }
     }
 }
 
