@@ -348,8 +348,8 @@ fn resolved(scene: &Scene, pair: &PairModel) -> bool {
 /// A warning of slave points that are too far apart for a rigid surface.
 fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel, end: f64) -> Option<String> {
     // What is curved ever more towards a tip bears there with the tip, where that is a slave.
-    let tips = SharpEdges::of(surface).is_some_and(|edges| edges.tips > 0);
-    if tips && model.pairs.iter().any(|p| p.edges_of == Some(index)) {
+    let tips = || SharpEdges::of(surface).is_some_and(|edges| edges.tips > 0);
+    if model.pairs.iter().any(|p| p.edges_of == Some(index)) && tips() {
         return None;
     }
     let spacing = point_spacing(model, index);

@@ -2,7 +2,7 @@
 
 use super::EdgeKind;
 use super::set::PatchSet;
-use super::topology::{CornerGroup, edge_point, edges_at};
+use super::topology::{CornerGroup, Edge, edge_point, edges_at};
 use crate::surface::{Surface, Vec3};
 
 /// Places of a pole at which its normals are taken, as parts of its length.
@@ -44,36 +44,9 @@ impl<S: Surface> PatchSet<S> {
         if !group.through.is_empty() {
             return None;
         }
-        let mut normals = Vec::new();
-        let mut away = Vec::new();
-        let mut patches = Vec::new();
-        let mut x = None;
+        let mut normals = Vec::with_capacity(group.corners.len());
         for &(patch, corner) in &group.corners {
-            let side = self.sides[patch as usize];
-            let edges = self.topology.of(patch);
-            for (local, end) in edges_at(edges, corner as usize) {
-                let edge = &edges[local];
-                let [start, stop] = edge.interval;
-                if edge.kind.is_none() {
-                    let places = (0..=PLACES).map(|k| k as f64 / PLACES as f64);
-                    normals.extend(places.map(|part| {
-                        let at = edge_point(self, edge, start + part * (stop - start));
-                        self.normal_near(patch, at.span, at.xi) * side
-                    }));
-                    continue;
-                }
-                let at = |part: f64| {
-                    let part = if end == 0 { part } else { 1.0 - part };
-                    edge_point(self, edge, start + part * (stop - start))
-                };
-                let tip = at(0.0);
-                normals.push(self.normal_near(patch, tip.span, tip.xi) * side);
-                away.push(at(INTO).jet.rho - tip.jet.rho);
-                x.get_or_insert(tip.jet.rho);
-            }
-            if !patches.contains(&patch) {
-                patches.push(patch);
-            }
+            self.normals_at(patch, corner, &mut normals);
         }
         let sum: Vec3 = normals.iter().sum();
         let farthest = |from: &Vec3| {
@@ -81,13 +54,62 @@ impl<S: Surface> PatchSet<S> {
             normals.iter().min_by(by).copied()
         };
         let first = farthest(&sum)?;
-        let tip = Tip {
-            x: x?,
+        let mut tip = Tip {
+            x: Vec3::zeros(),
             normals: [first, farthest(&first)?],
-            patches,
+            patches: group.corners.iter().map(|c| c.0).collect(),
         };
-        let outward = away.iter().all(|d| d.dot(&sum) < 0.0);
-        (outward && tip.angle() > 2.0 * angle && !self.on_an_edge(group, angle)).then_some(tip)
+        // Most corners of a set that is smooth end here.
+        if tip.angle() <= 2.0 * angle || self.on_an_edge(group, angle) {
+            return None;
+        }
+        tip.patches.sort_unstable();
+        tip.patches.dedup();
+        let mut away = Vec::new();
+        for &(patch, corner) in &group.corners {
+            let edges = self.topology.of(patch);
+            let ends = edges_at(edges, corner as usize).into_iter();
+            for (local, end) in ends.filter(|(local, _)| edges[*local].kind.is_some()) {
+                let [x, inside] = [0.0, INTO].map(|part| self.along_edge(&edges[local], end, part));
+                tip.x = x;
+                away.push(inside - x);
+            }
+        }
+        let outward = !away.is_empty() && away.iter().all(|d| d.dot(&sum) < 0.0);
+        outward.then_some(tip)
+    }
+
+    /// Adds the outward unit normals of a patch at one of its corners: those around it at a pole.
+    fn normals_at(&self, patch: u32, corner: u32, normals: &mut Vec<Vec3>) {
+        let side = self.sides[patch as usize];
+        let edges = self.topology.of(patch);
+        let ends = edges_at(edges, corner as usize);
+        let normal = |edge: &Edge, t: f64| {
+            let at = edge_point(self, edge, t);
+            self.normal_near(patch, at.span, at.xi) * side
+        };
+        let poles = ends
+            .iter()
+            .filter(|(local, _)| edges[*local].kind.is_none());
+        for (local, _) in poles.clone() {
+            let [start, stop] = edges[*local].interval;
+            let places = (0..=PLACES).map(|k| k as f64 / PLACES as f64);
+            normals
+                .extend(places.map(|part| normal(&edges[*local], start + part * (stop - start))));
+        }
+        if poles.count() == 0 {
+            let (local, end) = ends[0];
+            normals.push(normal(&edges[local], edges[local].interval[end]));
+        }
+    }
+
+    /// The point of an edge at a part of its length in parameters from one of its ends.
+    fn along_edge(&self, edge: &Edge, end: usize, part: f64) -> Vec3 {
+        let [start, stop] = edge.interval;
+        let part = if end == 0 { part } else { 1.0 - part };
+        edge_point(self, edge, start + part * (stop - start))
+            .jet
+            .rho
     }
 
     /// Whether an edge that ends at a group of corners is a free border or turns by more than `angle`.
