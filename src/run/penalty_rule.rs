@@ -193,10 +193,13 @@ impl PenaltyRule {
         }
     }
 
-    /// Raises the penalty of a pair no more: a stiffer one is worse for a reason that stays.
-    pub fn keep(&mut self, index: usize, penalty: f64) {
-        let rule = &mut self.pairs[index];
-        (rule.bad, rule.remembered) = (penalty, FOR_GOOD);
+    /// Raises the penalty of a pair no more: a stiffer one is worse for a reason that stays. Two half passes have one penalty.
+    pub fn keep(&mut self, model: &Model, index: usize, penalty: f64) {
+        let other = model.pairs[index].half.map_or(index, |half| half.other);
+        for pair in [index, other] {
+            let rule = &mut self.pairs[pair];
+            (rule.bad, rule.remembered) = (penalty, FOR_GOOD);
+        }
     }
 
     /// Whether a raise lowered the errors by enough to be kept.
@@ -408,6 +411,22 @@ mod tests {
         }
         assert_eq!(of(&rule, false, 0.2), 50.0);
         assert_eq!(penalties, [1.0, 1.0]);
+    }
+
+    #[test]
+    fn a_penalty_that_is_kept_is_raised_no_more() {
+        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
+        assert_eq!(raised(&rule, &model, false, 8.0, 3.0), 6000.0);
+        rule.keep(&model, 0, 3.0);
+        let none = errors([0.0; 2], [0.0; 2]);
+        for _ in 0..2 * FORGOTTEN {
+            rule.lower(&model, &none, 0, &mut [3.0, 3.0]);
+        }
+        for error in [0.02, 0.8, 8.0] {
+            for again in [false, true] {
+                assert_eq!(raised(&rule, &model, again, error, 3.0), 3.0);
+            }
+        }
     }
 
     /// A step that fails softens what is far stiffer than asked for, once, by what its error was at the last accepted step.

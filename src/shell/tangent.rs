@@ -131,8 +131,8 @@ pub(super) fn condense<const NE: usize, const P: usize>(
                     row[r] -= d[m][n] * l[n][r];
                 }
             }
-            // Written once: updated in place, rustc 1.95 (x86-64, optimised) takes rows of `l` from before their own updates where
-            // there are three of them.
+            // Written once: where rows of `l` were updated in place, rustc 1.95 (x86-64, level 2) was seen to take them from before their
+            // own updates, of three of them.
             (h[m], l[m]) = (below, row);
             let inverse = d[m][m].recip();
             for r in 0..24 {

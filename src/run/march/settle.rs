@@ -193,7 +193,7 @@ impl<'m> March<'_, 'm> {
                         Err(failure) => return Ok(Err(failure)),
                     }
                     if let Some((index, penalty)) = penalty {
-                        self.rule.keep(index, penalty);
+                        self.rule.keep(self.model, index, penalty);
                     }
                     // Where it does not help, half as far would not.
                     raises = 0;

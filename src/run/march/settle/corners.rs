@@ -35,10 +35,10 @@ impl March<'_, '_> {
         bearings: &Bearings,
     ) -> Option<usize> {
         let part = tried.errors.sum();
-        let pairs = 0..self.model.pairs.len();
+        let mut pairs = 0..self.model.pairs.len();
         let of = |index: usize, t: &Totals| RigidLimit::of_pair(self.model, index, t);
         let largest = (pairs.clone()).fold(0.0, |most: f64, i| most.max(of(i, &tried.totals)));
-        pairs.into_iter().find(|&index| {
+        pairs.find(|&index| {
             let [before, after] = [&tried.totals, totals].map(|t| of(index, t));
             let allowed = (BEYOND * part / (1.0 - part)).max(1.0) * before;
             has_folds(&self.model.pairs[index])
