@@ -1070,6 +1070,7 @@ class Builders:
         *,
         contact_points: bool | None = None,
         every: int | None = None,
+        full_precision: bool | None = None,
         shell_stresses: bool | None = None,
         tessellation: int | None = None,
     ) -> Self:
@@ -1081,6 +1082,9 @@ class Builders:
             Write the slave points of contacts with friction too, with their values.
         every: int, optional
             Write fields at every n-th accepted step (the last is always written); 0 writes none.
+        full_precision: bool, optional
+            Write the fields of bodies with all digits of double precision; else displacements have nearly ten of them
+            and all other fields nearly five, which takes half the room.
         shell_stresses: bool, optional
             Write the stresses of shells at the bottom, in the middle and at the top of the thickness too, in the
             directions of the mid-surface.
@@ -1088,4 +1092,4 @@ class Builders:
             Most subdivisions of a Bezier piece, in either direction, in the tessellated copy of rigid surfaces; fewer
             where the copy is within 2e-4 of the size of the surface, or of the bodies.
         """
-        return self._set("output", _given(contact_points=contact_points, every=every, shell_stresses=shell_stresses, tessellation=tessellation))
+        return self._set("output", _given(contact_points=contact_points, every=every, full_precision=full_precision, shell_stresses=shell_stresses, tessellation=tessellation))

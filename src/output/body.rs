@@ -1,6 +1,6 @@
 //! Fields of a deformable body.
 use super::OutputError;
-use super::vtu::{Array, DEGREES, Field, Grid, Place, single};
+use super::vtu::{Array, DEGREES, Field, Grid, Place, Precision};
 use crate::mesh::{ElementKind, Mesh};
 use covact_geometry::Vec3;
 use vtkio::model::CellType;
@@ -60,6 +60,8 @@ pub struct BodyFields<'a> {
     pub contact: Option<ContactFields<'a>>,
     /// Further fields.
     pub fields: Vec<Field<'a>>,
+    /// How exactly the numbers are written.
+    pub precision: Precision,
 }
 
 /// Equivalent stress of von Mises of a stress in the order of [`STRESS_COMPONENTS`].
@@ -73,8 +75,8 @@ impl BodyFields<'_> {
     /// The body as the bytes of a `.vtu` file; `id` is written as cell data `body`.
     ///
     /// Point data: `displacement` (3), `cauchy_stress` (6), `von_mises`, `contact_pressure`, `contact_gap`,
-    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`. What is computed from
-    /// other fields is in single precision.
+    /// `contact_status` and the further fields; cell data: `element` (counted from 0) and `body`. Numbers are as
+    /// exact as [`Self::precision`] says.
     ///
     /// # Errors
     /// [`OutputError::FieldLength`], [`OutputError::DuplicateField`] or [`OutputError::NoSuchNode`] when the fields and
@@ -90,23 +92,28 @@ impl BodyFields<'_> {
             .iter()
             .flat_map(|u| [u.x, u.y, u.z])
             .collect();
-        point_data.push(Array::new("displacement", 3, u));
+        let exactly = self.precision;
+        point_data.push(Array::new("displacement", 3, exactly.displacement(u)));
 
         if let Some(stress) = self.stress {
             self.check("cauchy_stress", nodes, stress.len())?;
             let flat: Vec<f64> = stress.iter().flatten().copied().collect();
-            let mut array = Array::new("cauchy_stress", 6, flat);
+            let mut array = Array::new("cauchy_stress", 6, exactly.field(&flat));
             array.component_names = STRESS_COMPONENTS.iter().map(|s| s.to_string()).collect();
             point_data.push(array);
             let mises: Vec<f64> = stress.iter().map(von_mises).collect();
-            point_data.push(Array::new("von_mises", 1, single(&mises)));
+            point_data.push(Array::new("von_mises", 1, exactly.field(&mises)));
         }
         if let Some(contact) = &self.contact {
             self.check("contact_pressure", nodes, contact.pressure.len())?;
             self.check("contact_gap", nodes, contact.gap.len())?;
             self.check("contact_status", nodes, contact.status.len())?;
-            point_data.push(Array::new("contact_pressure", 1, contact.pressure.to_vec()));
-            point_data.push(Array::new("contact_gap", 1, contact.gap.to_vec()));
+            point_data.push(Array::new(
+                "contact_pressure",
+                1,
+                exactly.field(contact.pressure),
+            ));
+            point_data.push(Array::new("contact_gap", 1, exactly.field(contact.gap)));
             point_data.push(Array::new("contact_status", 1, contact.status.to_vec()));
         }
 
@@ -130,10 +137,7 @@ impl BodyFields<'_> {
                     field: field.name.to_string(),
                 });
             }
-            let data = match field.derived {
-                true => single(field.data),
-                false => field.data.to_vec().into(),
-            };
+            let data = exactly.field(field.data);
             let mut array = Array::new(field.name, field.components as u32, data);
             array.component_names = field
                 .component_names

@@ -1,7 +1,7 @@
 //! The mid-surface of a sheet as exact rational Bezier cells, deformed.
 use super::OutputError;
 use super::bezier::{SurfacePiece, vtk_order};
-use super::vtu::{Array, DEGREES, Grid, WEIGHTS};
+use super::vtu::{Array, DEGREES, Grid, Precision, WEIGHTS};
 use covact_geometry::NurbsPatch;
 use vtkio::model::CellType;
 
@@ -23,6 +23,8 @@ pub struct MidSurface {
     pub thickness: f64,
     /// Elements that are shown; none where all of them are.
     pub kept: Option<Vec<bool>>,
+    /// How exactly displacements and pressures are written.
+    pub precision: Precision,
 }
 
 impl MidSurface {
@@ -70,11 +72,15 @@ impl MidSurface {
         }
         let cells = offsets.len();
         let mut point_data = vec![
-            Array::new("displacement", 3, way),
+            Array::new("displacement", 3, self.precision.displacement(way)),
             Array::new(WEIGHTS, 1, weights),
         ];
         if pressure.is_some() {
-            point_data.push(Array::new("contact_pressure", 1, pressures));
+            point_data.push(Array::new(
+                "contact_pressure",
+                1,
+                self.precision.field(&pressures),
+            ));
         }
         Grid {
             part: self.name.clone(),

@@ -60,4 +60,4 @@ pub use summary::{
 };
 pub use surface::{SurfaceOutput, Tessellation, flat_bytes};
 pub(crate) use vtu::escaped;
-pub use vtu::{Field, Place};
+pub use vtu::{Field, Place, Precision};

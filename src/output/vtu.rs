@@ -36,8 +36,6 @@ pub struct Field<'a> {
     pub data: &'a [f64],
     /// On nodes or on elements.
     pub place: Place,
-    /// Computed from fields that are written, too, and therefore in single precision.
-    pub derived: bool,
 }
 
 impl<'a> Field<'a> {
@@ -49,15 +47,47 @@ impl<'a> Field<'a> {
             component_names: &[],
             data,
             place: Place::Point,
-            derived: false,
+        }
+    }
+}
+
+/// How exactly the fields of a body are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Precision {
+    /// Displacements to within 1.2e-10 of each number, all else, in single precision, to within 1.5e-5: more than the results of a
+    /// mesh are worth, and half the room, since the last digits are what compression cannot shorten.
+    #[default]
+    Rounded,
+    /// All digits, in double precision.
+    Full,
+}
+
+/// Bits of the fraction that are kept of displacements (error 2^-33 = 1.2e-10) and of other fields (2^-16 = 1.5e-5).
+const DISPLACEMENT_BITS: u32 = 32;
+const FIELD_BITS: u32 = 15;
+
+impl Precision {
+    /// Full where that is asked for.
+    pub fn new(full: bool) -> Self {
+        match full {
+            true => Precision::Full,
+            false => Precision::Rounded,
         }
     }
 
-    /// A scalar field on the nodes that is computed from fields that are written, too.
-    pub fn derived(name: &'a str, data: &'a [f64]) -> Self {
-        Field {
-            derived: true,
-            ..Field::point(name, data)
+    /// Displacements: strains computed from them lose nothing that Newton's tolerance has not left open, even of bodies that move far.
+    pub(crate) fn displacement(self, data: Vec<f64>) -> IOBuffer {
+        match self {
+            Precision::Rounded => rounded(&data, DISPLACEMENT_BITS).into(),
+            Precision::Full => data.into(),
+        }
+    }
+
+    /// Any other field.
+    pub(crate) fn field(self, data: &[f64]) -> IOBuffer {
+        match self {
+            Precision::Rounded => single(&rounded(data, FIELD_BITS)),
+            Precision::Full => data.to_vec().into(),
         }
     }
 }
@@ -79,6 +109,21 @@ impl Array {
             data: data.into(),
         }
     }
+}
+
+/// Numbers with `bits` binary digits behind the leading one, each the nearest of them, the even one of two.
+fn rounded(data: &[f64], bits: u32) -> Vec<f64> {
+    let dropped = f64::MANTISSA_DIGITS - 1 - bits;
+    let round = |v: &f64| {
+        let digits = v.to_bits();
+        let half = (1 << (dropped - 1)) - 1 + (digits >> dropped & 1);
+        match v.is_finite() {
+            // What is rounded up beyond the last digit goes on in the exponent, which stands in front of it.
+            true => f64::from_bits((digits + half) >> dropped << dropped),
+            false => *v,
+        }
+    };
+    data.iter().map(round).collect()
 }
 
 /// Numbers in single precision, whose digits suffice to look at them and take half the room; in double precision where one
@@ -119,7 +164,8 @@ pub(crate) const DEGREES: &str = "HigherOrderDegrees";
 
 impl Grid {
     /// The grid as the bytes of a `.vtu` file, little endian, compressed by zlib, appended. Version 1.0 of the format, which
-    /// every reader knows, where all cells are linear; else 2.2 (up to 2.0 VTK permutes edge nodes of higher-order cells).
+    /// every reader knows, unless there are Bezier cells, which need 2.2. (Up to 2.0 VTK permutes nodes in the middle of upright edges
+    /// of Lagrange bricks; those written here are straight in that direction and have none.)
     pub fn into_bytes(self) -> Result<Vec<u8>, OutputError> {
         self.into_parts().map(|parts| parts.file())
     }
@@ -128,13 +174,16 @@ impl Grid {
     pub fn into_parts(self) -> Result<Appended, OutputError> {
         let patch = TagPatch::of(&self);
         let last = self.vectors;
-        let linear = |cell: &CellType| {
+        let plain = |cell: &CellType| {
             matches!(
                 cell,
-                CellType::Hexahedron | CellType::Quad | CellType::Vertex
+                CellType::Hexahedron
+                    | CellType::LagrangeHexahedron
+                    | CellType::Quad
+                    | CellType::Vertex
             )
         };
-        let (major, minor) = match self.types.iter().all(linear) {
+        let (major, minor) = match self.types.iter().all(plain) {
             true => (1, 0),
             false => (2, 2),
         };
@@ -222,6 +271,8 @@ impl TagPatch {
         } else if tag.starts_with("<DataArray ") {
             remove_attribute(&mut tag, " RangeMin=\"");
             remove_attribute(&mut tag, " RangeMax=\"");
+            // Numbers of nodes, far below the limit. As signed ones meshio reads cells of any number of nodes, too.
+            tag = tag.replace("type=\"UInt64\"", "type=\"Int64\"");
             for (name, extra) in &self.arrays {
                 if let Some(at) = tag.find(name.as_str()) {
                     tag.insert_str(at + name.len(), extra);

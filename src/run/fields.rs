@@ -19,8 +19,8 @@ use crate::model::master::{MasterNow, Masters};
 use crate::model::state::State;
 use crate::model::{BodyModel, Model, SurfaceModel};
 use crate::output::{
-    CLOSED, MidSurface, NOT_A_SLAVE, OPEN, OutputError, PartNames, Results, SLIP, SurfaceOutput,
-    SurfaceState, von_mises,
+    CLOSED, MidSurface, NOT_A_SLAVE, OPEN, OutputError, PartNames, Precision, Results, SLIP,
+    SurfaceOutput, SurfaceState, von_mises,
 };
 use crate::scene::Output;
 use covact_geometry::Vec3;
@@ -68,6 +68,8 @@ pub struct Fields {
     pub motion: Option<MotionFields>,
     /// Stresses of shells at the bottom, in the middle and at the top are written.
     shell_stresses: bool,
+    /// How exactly fields of bodies are written.
+    precision: Precision,
 }
 
 impl Fields {
@@ -124,6 +126,7 @@ impl Fields {
             gathered: false,
             motion: None,
             shell_stresses: output.shell_stresses,
+            precision: Precision::new(output.full_precision),
         })
     }
 
@@ -477,14 +480,12 @@ impl Fields {
                 still: still(model),
             })
             .collect();
-        let clouds = match self.gaps.is_empty() {
-            true => Vec::new(),
-            false => friction_fields::clouds(model, state, &self.gaps),
-        };
+        let clouds = friction_fields::clouds(model, state, &self.gaps);
         let sheets: Vec<MidSurface> = (model.bodies.iter().enumerate())
             .filter_map(|(i, body)| {
                 let slave = model.pairs.iter().any(|p| p.body == i);
-                mid_surface(body, &state.u, slave.then_some(&self.pressure[..]))
+                let pressure = slave.then_some(&self.pressure[..]);
+                mid_surface(body, &state.u, pressure, self.precision)
             })
             .collect();
         self.with_bodies(model, time, state, |bodies| {

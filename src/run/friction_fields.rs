@@ -84,7 +84,6 @@ impl FrictionFields {
                 component_names: &[],
                 data: &self.traction[3 * first..3 * last],
                 place: Place::Point,
-                derived: false,
             },
             Field::point("slip", &self.slip[first..last]),
             Field::point("dissipated", &self.dissipated[first..last]),
@@ -121,6 +120,9 @@ pub(super) fn cloud_names(model: &Model) -> Vec<String> {
 pub(super) fn clouds(model: &Model, state: &State, gaps: &[f64]) -> Vec<PointCloud> {
     let mut first = 0;
     let mut out = Vec::new();
+    if gaps.is_empty() {
+        return out;
+    }
     for (index, pair) in model.pairs.iter().enumerate() {
         let points = state.slaves(model, index);
         let own = first..first + points.len();

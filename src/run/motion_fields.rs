@@ -30,7 +30,6 @@ impl MotionFields {
             component_names: &[],
             data: &self.velocity[3 * nodes.start..3 * nodes.end],
             place: Place::Point,
-            derived: false,
         }
     }
 }

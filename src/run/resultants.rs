@@ -76,7 +76,6 @@ impl Resultants {
             component_names,
             data,
             place: Place::Point,
-            derived: true,
         };
         [
             field("membrane_force", &PLANE, &self.membrane),

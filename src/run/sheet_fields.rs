@@ -2,7 +2,7 @@
 use crate::mesh::nurbs::{Kept, SheetPatch};
 use crate::mesh::{ElementKind, Face, Mesh, NurbsSheet};
 use crate::model::BodyModel;
-use crate::output::{ContactFields, Field, MidSurface, Place};
+use crate::output::{ContactFields, Field, MidSurface, Place, Precision};
 use crate::shell::{Block, NurbsBlock};
 use covact_geometry::{NurbsPatch, PatchShape, Vec3};
 use std::collections::BTreeMap;
@@ -29,6 +29,7 @@ pub(super) fn mid_surface(
     body: &BodyModel,
     u: &[f64],
     pressure: Option<&[f64]>,
+    precision: Precision,
 ) -> Option<MidSurface> {
     let sheet = body.block.sheet()?;
     let first = body.first_node as usize;
@@ -51,6 +52,7 @@ pub(super) fn mid_surface(
             let all = 0..sheet.elements();
             all.map(|e| *sheet.kept(e) != Kept::Nothing).collect()
         }),
+        precision,
     })
 }
 
@@ -262,7 +264,6 @@ impl Spread {
             component_names: &[],
             data,
             place: Place::Point,
-            derived: false,
         })
     }
 }

@@ -50,7 +50,6 @@ impl ShellStresses {
             component_names: &COMPONENTS,
             data,
             place: Place::Point,
-            derived: true,
         })
     }
 }

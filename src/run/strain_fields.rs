@@ -45,12 +45,11 @@ impl StrainFields {
             component_names: &PRINCIPAL,
             data,
             place: Place::Point,
-            derived: true,
         };
         let shell = self.thickness.iter().flat_map(|[now, thinning]| {
             [
-                Field::derived("thickness", now),
-                Field::derived("thinning", thinning),
+                Field::point("thickness", now),
+                Field::point("thinning", thinning),
             ]
         });
         [

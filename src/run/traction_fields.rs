@@ -78,7 +78,6 @@ impl TractionFields {
                 .traction
                 .get(first..first + 3 * body.mesh.nodes.len())?,
             place: Place::Point,
-            derived: false,
         })
     }
 }

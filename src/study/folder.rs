@@ -225,11 +225,13 @@ fn written(run: &Planned, fields: bool, files: &mut Files) -> Result<String, Stu
         }
     }
     let every = if fields { RARELY } else { 0 };
-    match scene.get_mut("output") {
-        Some(Json::Object(output)) => {
-            output.insert("every".to_owned(), json!(every));
-        }
-        _ => scene["output"] = json!({ "every": every }),
+    if !scene["output"].is_object() {
+        scene["output"] = json!({});
+    }
+    scene["output"]["every"] = json!(every);
+    if fields {
+        // Runs that are compared may differ by less than the digits that are left out of fields to look at.
+        scene["output"]["full_precision"] = json!(true);
     }
     Ok(text(&scene))
 }

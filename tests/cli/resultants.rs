@@ -60,7 +60,8 @@ fn scene_of(element: &str, traction: [Value; 3]) -> Value {
         }},
         "supports": {"clamp": {"on": "strip.x_min", "fixed": true}},
         "loads": {"end": {"on": "strip.x_max", "traction": traction}},
-        "solution": {"step": {"initial": 1, "max": 1}, "newton": {"tolerance": 1e-12}}
+        "solution": {"step": {"initial": 1, "max": 1}, "newton": {"tolerance": 1e-12}},
+        "output": {"full_precision": true}
     })
 }
 
@@ -162,6 +163,7 @@ fn reactions_of_contact_add_up_to_the_force_of_the_tool() {
         let scene = plate_with(&[
             ("/solution/newton", json!({"tolerance": 1e-11})),
             ("/solution/kinematics", json!(kinematics)),
+            ("/output", json!({"full_precision": true})),
         ]);
         std::fs::write(folder.path().join("scene.json"), scene.to_string()).unwrap();
         let run = covact(

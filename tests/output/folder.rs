@@ -1,9 +1,9 @@
 //! The folder of a run: collections, history, summary.
 use covact::mesh::{ElementKind, Mesh};
 use covact::output::{
-    Accuracy, BodyFields, COLUMNS, GivenUp, History, OutputError, PartNames, Results, RunStatus,
-    Summary, SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table, documented,
-    file_stem, inlined, read_csv,
+    Accuracy, BodyFields, COLUMNS, GivenUp, History, OutputError, PartNames, Precision, Results,
+    RunStatus, Summary, SurfaceOutput, SurfacePiece, SurfaceState, Versions, column_table,
+    documented, file_stem, inlined, read_csv,
 };
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
@@ -49,6 +49,7 @@ fn body<'a>(name: &'a str, mesh: &'a Mesh, u: &'a [Vec3]) -> BodyFields<'a> {
         stress: None,
         contact: None,
         fields: Vec::new(),
+        precision: Precision::Rounded,
     }
 }
 

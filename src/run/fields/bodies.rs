@@ -90,6 +90,7 @@ impl Fields {
                         stress: Some(&stresses[i]),
                         contact: slave.then(|| spread.contact()),
                         fields: spread.fields().chain(worked_out).collect(),
+                        precision: self.precision,
                     };
                 }
                 BodyFields {
@@ -112,9 +113,9 @@ impl Fields {
                             component_names: &[],
                             data: &all[3 * range.start..3 * range.end],
                             place: Place::Point,
-                            derived: false,
                         }))
                         .collect(),
+                    precision: self.precision,
                 }
             })
             .collect();

@@ -135,6 +135,9 @@ pub struct Output {
     /// Write the stresses of shells at the bottom, in the middle and at the top of the thickness too, in the directions of the
     /// mid-surface.
     pub shell_stresses: bool,
+    /// Write the fields of bodies with all digits of double precision; else displacements have nearly ten of them and all other fields
+    /// nearly five, which takes half the room.
+    pub full_precision: bool,
 }
 
 impl Default for Solution {
@@ -182,6 +185,7 @@ impl Default for Output {
             tessellation: 16,
             contact_points: false,
             shell_stresses: false,
+            full_precision: false,
         }
     }
 }

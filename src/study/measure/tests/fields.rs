@@ -1,6 +1,6 @@
 use super::*;
 use crate::mesh::{self, ElementKind, Mesh};
-use crate::output::{BodyFields, ContactFields, Field, Place, Results};
+use crate::output::{BodyFields, ContactFields, Field, Place, Precision, Results};
 use crate::scene::Block;
 use ElementKind::{H8, Q18};
 use covact_geometry::Vec3;
@@ -49,6 +49,7 @@ pub(super) fn results(
             } else {
                 Vec::new()
             },
+            precision: Precision::Full,
         };
         results
             .write(step, time, &[body], &[], &[])
@@ -254,7 +255,6 @@ fn fields_on_cells_and_of_several_components() {
             component_names: &[],
             data,
             place,
-            derived: false,
         };
         let fields = vec![
             field("c", 1, &cells[..], Place::Cell),
