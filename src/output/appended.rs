@@ -2,9 +2,10 @@
 //!
 //! vtkio writes arrays inline in base64 and reads no raw ones: [`Appended`] moves them behind the tree, and [`inlined`] takes them
 //! back before it reads a file.
-use super::packed::{first_array, packed};
+use super::packed::{array_of, compressed, first_array, inline_size};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
 use std::borrow::Cow;
 
 /// What stands in front of the arrays; the offset of the first is 0.
@@ -30,7 +31,7 @@ impl Appended {
     /// after the others.
     pub fn new(bytes: &[u8], last: Option<&str>, tag: impl Fn(&str) -> String) -> Self {
         let name = last.map(|name| format!(" Name=\"{name}\""));
-        let (mut head, mut body, mut contents) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut head, mut body, mut contents) = (Vec::new(), Body::default(), Vec::new());
         // Where the offset of the last array belongs in the head.
         let mut open = None;
         let mut rest = bytes;
@@ -47,7 +48,7 @@ impl Appended {
             let own = tag(own);
             let mut ahead = rest;
             let array = match own.starts_with(ARRAY) && own.contains(INLINE) {
-                true => next_tag(&mut ahead).and_then(|(text, _)| packed(text)),
+                true => next_tag(&mut ahead).and_then(|(text, _)| array_of(text)),
                 false => None,
             };
             let Some(array) = array else {
@@ -60,19 +61,19 @@ impl Appended {
             let own = own.replace(INLINE, APPENDED);
             head.extend_from_slice(own.trim_end_matches('>').as_bytes());
             if is_last {
-                contents = array;
+                contents = compressed(&array, Compression::fast()).unwrap_or_default();
                 open = Some(head.len());
             } else {
-                head.extend_from_slice(offset(body.len()).as_bytes());
-                body.extend(array);
+                head.extend_from_slice(offset(body.bytes.len()).as_bytes());
+                body.push(&array);
             }
             head.extend_from_slice(b"/>");
         }
         if let Some(at) = open {
-            head.splice(at..at, offset(body.len()).into_bytes());
+            head.splice(at..at, offset(body.bytes.len()).into_bytes());
         }
         head.extend_from_slice(START);
-        head.extend(body);
+        head.extend(body.bytes);
         Appended {
             head,
             last: contents,
@@ -86,6 +87,36 @@ impl Appended {
     /// The file with another last array.
     pub fn file_with(&self, last: &[u8]) -> Vec<u8> {
         [&self.head, last, END].concat()
+    }
+}
+
+/// Arrays one after the other.
+///
+/// meshio (5.3) takes them inline, one by one: it finds the tag of the next by its offset, and writes there where the array starts in
+/// its own text, in base64. Where an offset equals one that was written before, it finds the tag of another array, whose numbers it
+/// then reads for this one. One file in two hundred would have such an offset.
+#[derive(Debug, Default)]
+struct Body {
+    bytes: Vec<u8>,
+    /// Where arrays start in meshio's text, and where that ends.
+    starts: Vec<usize>,
+    end: usize,
+}
+
+impl Body {
+    /// Appends an array, compressed otherwise where the offset of the next one would be taken for another.
+    fn push(&mut self, array: &[u8]) {
+        self.starts.push(self.end);
+        self.end += inline_size(array);
+        let levels = [1, 2, 3, 4, 5, 6, 7, 8, 9, 0].map(Compression::new);
+        let mut each = levels.iter().filter_map(|level| compressed(array, *level));
+        let clear = |packed: &Vec<u8>| !self.starts.contains(&(self.bytes.len() + packed.len()));
+        let first = each.next().unwrap_or_default();
+        let found = match clear(&first) {
+            true => None,
+            false => each.find(clear),
+        };
+        self.bytes.extend(found.unwrap_or(first));
     }
 }
 
@@ -139,6 +170,8 @@ pub fn inlined(bytes: &[u8]) -> Option<Cow<'_, [u8]>> {
 mod tests {
     use super::*;
     use crate::output::packed::compressed;
+    use flate2::read::ZlibDecoder;
+    use std::io::Read;
 
     /// A file of two arrays that vtkio may have written.
     fn file(numbers: [&[u8]; 2]) -> String {
@@ -150,6 +183,43 @@ mod tests {
         )
     }
 
+    /// Of two arrays the second would stand where the first starts in meshio's text, or the third where the second does: they do not.
+    #[test]
+    fn no_offset_is_one_that_meshio_has_given_before() {
+        let mut moved = 0;
+        // Noise, which does not get shorter, in front of what does.
+        let noise = |n: usize| -> Vec<u8> {
+            let step = |s: &mut u32| {
+                *s = s.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                Some((*s >> 24) as u8)
+            };
+            std::iter::repeat_n((), n)
+                .scan(n as u32, |s, ()| step(s))
+                .collect()
+        };
+        for n in 100..400 {
+            let arrays = [noise(n), vec![7; 50], noise(n / 3 + 1), noise(5)];
+            let mut body = Body::default();
+            let (mut offsets, mut plain) = (Vec::new(), 0);
+            for array in &arrays {
+                offsets.push(body.bytes.len());
+                body.push(array);
+                plain += compressed(array, Compression::fast()).unwrap().len();
+            }
+            moved += usize::from(plain != body.bytes.len());
+            for (k, at) in offsets.iter().enumerate().skip(1) {
+                assert!(!body.starts[..k].contains(at), "{n}: {at}");
+            }
+            for (at, array) in offsets.iter().zip(&arrays) {
+                let (_, blocks) = first_array(&body.bytes[*at..]).unwrap();
+                let mut back = Vec::new();
+                ZlibDecoder::new(blocks).read_to_end(&mut back).unwrap();
+                assert!(back == *array, "{n}");
+            }
+        }
+        assert!(moved > 0);
+    }
+
     /// Arrays stand behind the tree, the one that is named after the others; they lead back, whatever bytes they hold.
     #[test]
     fn arrays_are_moved_and_taken_back() {
@@ -159,7 +229,7 @@ mod tests {
         let parts = Appended::new(text.as_bytes(), Some("u"), |tag| {
             tag.replace("more=", "less=")
         });
-        let (u, v) = (compressed(&all).unwrap(), compressed(other).unwrap());
+        let [u, v] = [&all[..], other].map(|a| compressed(a, Compression::fast()).unwrap());
         let expected = format!(
             "<VTKFile><DataArray Name=\"u\" format=\"appended\" less=\"\" offset=\"{}\"/>\
              <DataArray Name=\"v\" format=\"appended\" offset=\"0\"/><AppendedData encoding=\"raw\">_",

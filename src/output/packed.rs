@@ -12,20 +12,25 @@ const BLOCK: usize = 1 << 20;
 /// Bytes of the length that stands in front of an array.
 const LENGTH: usize = 8;
 
-/// An array in base64 behind its length, as the serialiser writes it, in compressed blocks: their number, their length and
-/// that of a shorter last one before compression, and their lengths after it, then the blocks (format: "VTK file formats",
-/// VTK user's guide). None where the text is not such an array.
-pub(super) fn packed(text: &[u8]) -> Option<Vec<u8>> {
-    let bytes = STANDARD.decode(text.trim_ascii()).ok()?;
+/// The bytes of an array in base64 behind its length, as the serialiser writes it. None where the text is not such an array.
+pub(super) fn array_of(text: &[u8]) -> Option<Vec<u8>> {
+    let mut bytes = STANDARD.decode(text.trim_ascii()).ok()?;
     let (length, data) = bytes.split_at_checked(LENGTH)?;
     if u64::from_le_bytes(length.try_into().ok()?) != data.len() as u64 {
         return None;
     }
-    compressed(data)
+    bytes.drain(..LENGTH);
+    Some(bytes)
 }
 
-/// An array in compressed blocks, as [`packed`] leaves it.
-pub(super) fn compressed(data: &[u8]) -> Option<Vec<u8>> {
+/// Bytes of an array in base64 behind its length.
+pub(super) fn inline_size(data: &[u8]) -> usize {
+    4 * (LENGTH + data.len()).div_ceil(3)
+}
+
+/// An array in compressed blocks: their number, their length and that of a shorter last one before compression, and their lengths
+/// after it, then the blocks (format: "VTK file formats", VTK user's guide).
+pub(super) fn compressed(data: &[u8], level: Compression) -> Option<Vec<u8>> {
     let blocks = data.chunks(BLOCK);
     let head = [blocks.len(), BLOCK, data.len() % BLOCK];
     let start = LENGTH * (head.len() + blocks.len());
@@ -34,7 +39,7 @@ pub(super) fn compressed(data: &[u8]) -> Option<Vec<u8>> {
     out.resize(start, 0);
     for (k, block) in blocks.enumerate() {
         let before = out.len();
-        let mut encoder = ZlibEncoder::new(&mut out, Compression::fast());
+        let mut encoder = ZlibEncoder::new(&mut out, level);
         encoder.write_all(block).ok()?;
         encoder.finish().ok()?;
         let size = number(out.len() - before);
@@ -84,7 +89,9 @@ mod tests {
         for n in [0, 1, 1000, BLOCK, 2 * BLOCK + 5] {
             let data: Vec<u8> = (0..n).map(|k| (k / 7 % 251) as u8).collect();
             let text = STANDARD.encode([&(n as u64).to_le_bytes()[..], &data].concat());
-            let mut packed = packed(text.as_bytes()).unwrap();
+            assert_eq!(text.len(), inline_size(&data));
+            let array = array_of(text.as_bytes()).unwrap();
+            let mut packed = compressed(&array, Compression::fast()).unwrap();
             let length = packed.len();
             packed.extend_from_slice(b"what follows");
             let count = n.div_ceil(BLOCK);
@@ -105,7 +112,7 @@ mod tests {
             }
             assert!(back == data && at == body.len(), "{n}");
         }
-        assert_eq!(packed(b"no array"), None);
-        assert_eq!(packed(STANDARD.encode([9u8; 12]).as_bytes()), None);
+        assert_eq!(array_of(b"no array"), None);
+        assert_eq!(array_of(STANDARD.encode([9u8; 12]).as_bytes()), None);
     }
 }

@@ -3,6 +3,7 @@ use super::OutputError;
 use super::appended::Appended;
 use super::packed::compressed;
 use super::vtu::{Array, Grid};
+use flate2::Compression;
 use std::sync::{Mutex, PoisonError};
 use vtkio::model::IOBuffer;
 
@@ -46,7 +47,7 @@ impl LastFile {
         if let (Some((of, template)), Some((double, numbers))) = (&*last, &numbers)
             && of == key
             && template.double == *double
-            && let Some(contents) = compressed(numbers)
+            && let Some(contents) = compressed(numbers, Compression::fast())
         {
             return Ok(template.file.file_with(&contents));
         }
