@@ -1,4 +1,5 @@
 //! Contact pairs: slave points, masters, penalties.
+mod ends;
 mod friction;
 mod masters;
 mod sampling;
