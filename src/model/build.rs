@@ -203,9 +203,10 @@ fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
     }
     let free = super::free_motion::free_motions(model);
     // At small displacements nothing comes into contact that is not held.
+    let small = scene.solution.kinematics == scene::Kinematics::Small;
     let refused = match scene.solution.stabilization {
         Stabilization::None => true,
-        Stabilization::Auto => scene.solution.kinematics == scene::Kinematics::Small,
+        Stabilization::Auto => small,
         Stabilization::Viscous { .. } => false,
     };
     if let (true, Some(free)) = (refused, free.first()) {
@@ -213,8 +214,7 @@ fn stabilize(scene: &Scene, model: &mut Model) -> Result<(), ModelError> {
             "body `{}` can move freely {}: no support hinders it",
             free.body, free.motion
         );
-        let help = "add or extend a support until the body is held, or ask for `solution.stabilization` where contact is to \
-                    hold it (`auto`, the default, or `viscous`): contact and loads alone do not hold it before it touches";
+        let help = super::stabilization::not_held(small);
         return Err(text(format!("/bodies/{}", free.body), message).help(help));
     }
     if let Some((stabilization, note)) = super::stabilization::stabilization(scene, model, free)? {

@@ -83,6 +83,20 @@ impl Bending {
     }
 }
 
+/// What helps where a body is not held and nothing stabilises it.
+pub(super) fn not_held(small: bool) -> &'static str {
+    match small {
+        true => {
+            "add or extend a support until the body is held, or leave `kinematics` to its default, `large`, where contact is to hold it: \
+             small displacements have no stabilisation"
+        }
+        false => {
+            "add or extend a support until the body is held, or leave `solution.stabilization` to its default where contact is to hold \
+             it: contact and loads alone do not hold it before it touches"
+        }
+    }
+}
+
 /// The stabilisation that a scene asks for; `free` are the motions that no support hinders.
 ///
 /// # Errors

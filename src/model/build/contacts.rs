@@ -2,6 +2,7 @@
 mod ends;
 mod friction;
 mod masters;
+mod pressed;
 mod sampling;
 
 use super::super::augmentation::AugmentationModel;
@@ -16,7 +17,7 @@ use super::nurbs_bodies::sheet_size;
 use crate::contact::points::SlavePoint;
 use crate::machine::memory;
 use crate::mesh::Face;
-use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points, TIME};
+use crate::scene::{Contact, Gap, MasterSurface, Passes, Penalty, Points};
 use penalty::{FaceSize, Suitable};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -187,29 +188,6 @@ impl Builder<'_> {
         Ok((body, faces, points, sampled))
     }
 
-    /// The largest pressure that loads exert on the bodies of a contact at the end of the first step, where it is the same everywhere
-    /// (force / length^2): a penalty under which it sinks in too deep is known to be too soft.
-    fn pressed(&self, bodies: [Option<usize>; 2]) -> f64 {
-        let first = self.loaded.first_step();
-        let on = |set: &str| {
-            let name = set.split('.').next().unwrap_or(set);
-            let body = self.body_index.get(name).copied();
-            body.is_some() && bodies.contains(&body)
-        };
-        let loads = self.scene.loads.values();
-        let pressures = loads
-            .filter(|load| load.on.iter().any(&on))
-            .filter_map(|load| {
-                load.pressure
-                    .as_ref()?
-                    .compile(&TIME)
-                    .ok()?
-                    .eval(first)
-                    .ok()
-            });
-        pressures.fold(0.0, |most, p| most.max(p.abs()))
-    }
-
     /// A contact pair.
     pub(super) fn pair(
         &mut self,
@@ -303,7 +281,8 @@ impl Builder<'_> {
                     Master::Body(master) => Some(master.body),
                     Master::Rigid(_) => None,
                 };
-                let pressed = self.pressed([Some(body), master]) / deepest;
+                let area = points.iter().map(|p| p.area).sum();
+                let pressed = self.pressed([Some(body), master], area) / deepest;
                 by_pressure = pressed > suits.start;
                 let start = suits.start.max(pressed);
                 (start.min(suits.stiffest), Some(ruled))

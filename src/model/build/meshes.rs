@@ -15,8 +15,8 @@ pub(super) fn mesh_error(body: &str, source: &MeshSource, error: mesh::MeshError
     let extruded = matches!(source, MeshSource::File(file) if file.thickness.is_some());
     let help = matches!(error, mesh::MeshError::Inverted { .. }).then_some(match extruded {
         true => {
-            "the thickness is too large for the elements beside a fold or a tight bend there: mesh them coarser, or give a \
-             smaller thickness"
+            "the thickness is too large for the elements beside a fold or a tight bend there (mesh them coarser, or give a smaller \
+             thickness), or a face of the mesh itself has a corner of 180 degrees or more"
         }
         false => {
             "look at these elements in the mesher: a node may have moved through a face, or the surface is too curved for \
