@@ -90,8 +90,8 @@ fn fields(out: &Path) -> [usize; 2] {
     sums
 }
 
-/// Results take less than three tenths of plain ones (single precision for what is worked out, compression, tools that stand still
-/// written once, no code of text), and the page, beside its scripts, a twenty-fifth; benches/outputs.py measures all shipped scenes.
+/// Results take about a fifth of plain ones (no more digits than they are worth, compression, tools that stand still written once, no
+/// code of text), and the page, beside its scripts, a twenty-fifth; benches/outputs.py measures all shipped scenes, which take a fifth.
 fn bounded(name: &str) {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenes/{name}.json"));
@@ -105,7 +105,7 @@ fn bounded(name: &str) {
     println!("{name}: {written} of {plain} bytes, {share:.3}; page {page}");
     assert!(plain > 1_000_000, "{name}: {plain}");
     assert!(
-        share < 0.3,
+        share < 0.22,
         "{name}: {written} of {plain} bytes, {share:.3}"
     );
     assert!(
@@ -115,12 +115,12 @@ fn bounded(name: &str) {
 }
 
 #[test]
-fn results_of_a_sheet_take_three_tenths_of_plain_ones() {
+fn results_of_a_sheet_take_about_a_fifth_of_plain_ones() {
     bounded("hat_pressed");
 }
 
 #[test]
-fn results_of_a_strip_take_three_tenths_of_plain_ones() {
+fn results_of_a_strip_take_about_a_fifth_of_plain_ones() {
     bounded("strip_over_cylinder");
 }
 
