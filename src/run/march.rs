@@ -1,7 +1,9 @@
 //! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
+mod elements;
 mod ending;
 mod giving_up;
+mod hand_over;
 mod motion;
 mod outcome;
 pub(in crate::run) mod passing;
@@ -16,6 +18,7 @@ mod start;
 mod summary;
 mod telling;
 
+pub(super) use elements::Unlike;
 pub(super) use giving_up::Patience;
 pub(super) use outcome::{AcceptedStep, Ending, Outcome};
 pub(super) use restart::{Kept, KeptFiles, take_variant};
@@ -271,6 +274,12 @@ impl March<'_, '_> {
                         self.take_back(&penalties);
                         break 'solved StepFailure::Jumped { part };
                     }
+                    let mut gave_way = self.lost_hold(trial, &converged);
+                    // What they answer is not taken where others go on from here.
+                    if let Some(ending) = self.without(&gave_way) {
+                        self.take_back(&penalties);
+                        return Ok(Outcome::Stopped(ending));
+                    }
                     (self.watch).accept(self.assembler, residual, &converged.totals, &span);
                     match &mut walk.before {
                         Some((state, size)) => {
@@ -335,9 +344,18 @@ impl March<'_, '_> {
                     self.tell_weighted(step, dt);
                     self.tell_energy(done);
                     let mut ending = self.stabilized(committed, &drag, &converged, done);
-                    if ending.is_none() {
+                    if jumped {
                         let before = walk.before.as_ref().map(|(state, _)| state);
-                        ending = self.lost_hold(committed, before, &converged, jumped);
+                        gave_way.extend(self.lost_in_jump(committed, before));
+                    }
+                    if ending.is_none() {
+                        ending = self.without(&gave_way).map(|ending| Ending {
+                            accepted: true,
+                            ..ending
+                        });
+                    }
+                    if ending.is_none() {
+                        gave_way.into_iter().for_each(|g| self.tell_lost(g));
                     }
                     let accepted = AcceptedStep {
                         dt,

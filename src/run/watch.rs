@@ -190,6 +190,7 @@ impl Watch {
             gained_step: self.gained_step,
             speed: self.speed,
             span: self.span,
+            pressed: self.pressed,
             penalties: self.penalties,
             ratios: self.ratios,
             ..watch

@@ -170,8 +170,8 @@ fn finer_rings_take_hardly_more_iterations() {
     assert!(g != 0.0 && (f / g - 1.0).abs() < 0.02, "{f} {g}");
 }
 
-/// A block of rubber squeezed by two fifths between bonded faces: the default element gives way there, and the run is
-/// repeated with bricks of one change of volume each, and says so. Where the scene names the element, it ends where it does.
+/// A block of rubber squeezed by two fifths between bonded faces: the default element gives way there, and the run goes on
+/// with bricks of one change of volume each, and says so. Where the scene names the element, it ends where it does.
 #[test]
 fn squeezed_elements_are_replaced_and_told() {
     let mut scene = json!({
@@ -198,7 +198,8 @@ fn squeezed_elements_are_replaced_and_told() {
     let force = outcome.at("force.above.z", 1.0);
     scene["bodies"]["block"]["element"] = json!("h8_mean_dilatation");
     let named = done(&scene);
-    assert_eq!(named.at("force.above.z", 1.0), force);
+    let other = named.at("force.above.z", 1.0) / force - 1.0;
+    assert!(force < -10.0 && other.abs() < 1e-9, "{force} {other}");
     scene["bodies"]["block"]["element"] = json!("h8");
     let kept = solve(&scene);
     assert_eq!(kept.summary.status, RunStatus::NotConverged);
@@ -240,12 +241,15 @@ fn told(run: &Outcome, text: &str) -> bool {
 }
 
 /// A ball pressed into a block of rubber: the default elements under it give way, in steps that converge, and would carry a third
-/// of the force. The run begins again with bricks of one change of volume each and tells of it. Twelve elements through the depth
+/// of the force. The run goes on with bricks of one change of volume each and tells of it. Twelve elements through the depth
 /// give 37.86 with these and 38.50 with plain bricks, which converge from the other side.
 #[test]
 fn a_ball_pressed_into_rubber_has_its_force() {
     let run = done(&ball_in_rubber(6, None, 0.0));
-    assert!(told(&run, "repeated with `h8_mean_dilatation`"));
+    assert!(told(
+        &run,
+        "from there the run went on with `h8_mean_dilatation`"
+    ));
     let force = |run: &Outcome| run.at("force.ball.z", 1.0);
     println!("{}", force(&run));
     assert!((force(&run) / -38.2 - 1.0).abs() < 0.05);
@@ -262,7 +266,10 @@ fn a_ball_pressed_into_rubber_has_its_force() {
 #[test]
 fn a_ball_pressed_into_rubber_with_friction_has_its_force() {
     let run = done(&ball_in_rubber(6, None, 0.3));
-    assert!(told(&run, "repeated with `h8_mean_dilatation`"));
+    assert!(told(
+        &run,
+        "from there the run went on with `h8_mean_dilatation`"
+    ));
     let force = run.at("force.ball.z", 1.0);
     println!("{force}");
     assert!((force / -40.9 - 1.0).abs() < 0.05, "{force}");

@@ -549,8 +549,8 @@ fn a_repetition_with_edges() {
     assert_eq!(table(whole.path()), table(parts.path()));
 }
 
-/// A sharp wedge is pressed deep into rubber: the run is repeated with its edge as a slave, with other elements, and at last without the
-/// edge. Interrupted while the edge is tried for the first time, it goes the same way to the same end, and counts all runs.
+/// A sharp wedge is pressed deep into rubber: the run is repeated with its edge as a slave, goes on with other elements, and is repeated at last without
+/// the edge. Interrupted while the edge is tried for the first time, it goes the same way to the same end, and counts all runs.
 #[test]
 fn a_repetition_that_is_given_up() {
     let folder = tempfile::tempdir().unwrap();
@@ -579,7 +579,7 @@ fn a_repetition_that_is_given_up() {
     let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let (ended, _) = part(&scene, whole.path(), false, 1, Stop::Never).unwrap();
     println!("{:?} {:?}", ended.given_up, ended.warnings);
-    assert_eq!((ended.status, ended.given_up.runs), (RunStatus::Done, 3));
+    assert_eq!((ended.status, ended.given_up.runs), (RunStatus::Done, 2));
     let (broken, _) = part(&scene, parts.path(), false, 1, Stop::OnEdges).unwrap();
     assert_eq!(
         (broken.status, broken.given_up.runs),
@@ -628,5 +628,32 @@ fn a_repetition_with_more_points() {
     assert!(
         notes.iter().any(|n| n.contains("reached its end already")),
         "{notes:?}"
+    );
+}
+
+/// Rubber squeezed between a floor and a tool with friction, until its elements give way and others go on from there: broken off before
+/// that and after it.
+#[test]
+fn elements_that_others_go_on_from() {
+    let found = in_pieces(&json!({
+        "covact": 1,
+        "materials": {"rubber": {"neo_hooke": {"E": 5, "nu": 0.45}}},
+        "bodies": {"pad": {
+            "mesh": {"block": {"min": [0, 0, 0], "max": [4, 1, 2], "elements": [8, 2, 4]}}, "material": "rubber"
+        }},
+        "surfaces": {"tool": {
+            "plane": {"size": [20, 20], "center": [2, 0.5, 2], "normal": [0, 0, -1]},
+            "motion": {"translation": [0, 0, "-t"]}
+        }},
+        "contacts": {"press": {"slave": "pad.top", "master": "tool", "friction": 0.3}},
+        "supports": {"below": {"on": "pad.bottom", "fixed": true}},
+        "output": {"every": 1}
+    }));
+    assert_eq!((found.status, found.given_up.runs), (RunStatus::Done, 0));
+    let told = |words: &str| found.warnings.iter().any(|w| w.contains(words));
+    assert!(
+        told("from there the run went on with"),
+        "{:?}",
+        found.warnings
     );
 }

@@ -369,7 +369,7 @@ fn wedge_in_rubber(elements: [u32; 2], depth: f64) -> Value {
 }
 
 /// The force on a wedge that is pressed into rubber, by default: its edge sinks in between nodes and becomes a slave, the enhanced
-/// elements below it give way and are replaced, and the edge stays a slave. Slave nodes alone have a force that is too small by
+/// elements below it give way, and with others the run goes on. Slave nodes alone have a force that is too small by
 /// a quarter on this mesh; at 80 elements along the block, ever finer ones come to 1.73 with the edge and up to 1.68 without it.
 #[test]
 fn a_sharp_wedge_is_pressed_into_rubber() {
@@ -400,20 +400,16 @@ fn a_sharp_wedge_is_pressed_into_rubber() {
     );
     assert!(!warned(&found, "sinks into"), "{:?}", s.warnings);
     assert!(warned(&found, "`h8_mean_dilatation`"), "{:?}", s.warnings);
-    // Asked for from the start, it is the same run.
+    // Asked for from the start, it comes to the same end.
     let asked = solved(&|scene| {
         scene["contacts"]["c"]["passes"] = json!("edges");
         scene["bodies"]["block"]["element"] = json!("h8_mean_dilatation");
     });
-    assert_eq!(force(&asked), force(&found));
+    let other = force(&asked) / force(&found) - 1.0;
+    assert!(other.abs() < 1e-9, "{other}");
     assert_eq!(asked.summary.given_up.runs, 0);
-    // What was given up on the way is counted.
-    assert_eq!(s.given_up.runs, 2);
-    assert!(s.given_up.newton_iterations > 5);
-    assert_eq!(
-        s.newton_iterations,
-        asked.summary.newton_iterations + s.given_up.newton_iterations
-    );
+    // Elements are exchanged within a run.
+    assert_eq!(s.given_up.runs, 1);
     let alone = solved(&|scene| scene["contacts"]["c"]["passes"] = json!("one"));
     assert!(force(&alone) < 0.8 * fine, "{}", force(&alone));
     assert!(warned(&alone, "sinks into"), "{:?}", alone.summary.warnings);

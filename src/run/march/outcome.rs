@@ -23,6 +23,8 @@ pub(in crate::run) struct Ending {
     pub reason: Option<String>,
     /// Numbers of the bodies whose enhanced strains are what the run could not go on with.
     pub squeezed: Vec<usize>,
+    /// The last step was accepted before they were looked into.
+    pub accepted: bool,
     /// It was given up since edges of masters lie in slaves.
     pub on_rims: bool,
     /// It was given up since surfaces sink into the slaves of these pairs, between their points.
@@ -38,6 +40,7 @@ impl Ending {
             status,
             reason,
             squeezed: Vec::new(),
+            accepted: false,
             on_rims: false,
             between: Vec::new(),
             slid: Vec::new(),

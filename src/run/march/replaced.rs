@@ -10,28 +10,41 @@ use covact_geometry::Vec3;
 /// What helps a block.
 const HOLDS: &str = "`h8_mean_dilatation` holds";
 
+/// Bodies whose elements gave way in a step, and what is told of the first of them.
+pub(super) struct GaveWay {
+    lost: Vec<(usize, Vec3)>,
+    body: usize,
+    text: String,
+    /// What they do, a part of the text.
+    what: &'static str,
+    /// What ends it.
+    helps: &'static str,
+}
+
 impl March<'_, '_> {
-    /// Looks into squeezed elements after a step whose tangent has negative pivots (a negative determinant, where that is all that
-    /// is known), or whose energies tell of a jump: at its end, and where it jumped also at its start, since what gave way may
-    /// stand at rest behind the jump. Where other elements may replace them the run ends, else the body is told.
-    pub(super) fn lost_hold(
-        &mut self,
+    /// Looks into elements at the end of a step that is not accepted yet: whether their material feels what they lose of their volume,
+    /// and into squeezed ones where its tangent has negative pivots (a negative determinant, where that is all that is known).
+    pub(super) fn lost_hold(&self, state: &State, converged: &Converged) -> Vec<GaveWay> {
+        let unstable = converged
+            .factorization
+            .is_some_and(|f| f.negative_pivots > 0);
+        let squeezed = unstable.then(|| self.squeezed(hold::lost(self.model, state)));
+        let unfelt = self.unfelt(state).into_iter();
+        unfelt.chain(squeezed.flatten()).collect()
+    }
+
+    /// Looks into squeezed elements after a step whose energies tell of a jump, at its end and at its start, since what gave way may
+    /// stand at rest behind the jump.
+    pub(super) fn lost_in_jump(
+        &self,
         committed: &State,
         before: Option<&State>,
-        converged: &Converged,
-        jumped: bool,
-    ) -> Option<Ending> {
-        if let Some(ending) = self.unfelt(committed) {
-            return Some(ending);
-        }
-        let unstable = converged.factorization?.negative_pivots > 0;
-        if !unstable && !jumped {
-            return None;
-        }
-        let mut lost = hold::lost(self.model, committed);
-        if lost.is_empty() && jumped {
-            lost = before.map_or(Vec::new(), |state| hold::lost(self.model, state));
-        }
+    ) -> Option<GaveWay> {
+        let at_start = || self.squeezed(hold::lost(self.model, before?));
+        (self.squeezed(hold::lost(self.model, committed))).or_else(at_start)
+    }
+
+    fn squeezed(&self, lost: Vec<(usize, Vec3)>) -> Option<GaveWay> {
         let (body, at) = *lost.first()?;
         let name = &self.model.bodies[body].name;
         let text = format!(
@@ -40,13 +53,19 @@ impl March<'_, '_> {
             number(at.y),
             number(at.z)
         );
-        self.gave_way(&lost, (body, text, "lose their hold"), HOLDS)
+        Some(GaveWay {
+            lost,
+            body,
+            text,
+            what: "lose their hold",
+            helps: HOLDS,
+        })
     }
 
     /// Looks for blocks whose elements have lost more volume than their material feels: what they answer is too soft, and nothing
-    /// else tells of it. As [`Self::lost_hold`] from there on.
-    fn unfelt(&mut self, committed: &State) -> Option<Ending> {
-        let unfelt = hold::unfelt(self.model, committed);
+    /// else tells of it.
+    fn unfelt(&self, state: &State) -> Option<GaveWay> {
+        let unfelt = hold::unfelt(self.model, state);
         let worst = unfelt.first()?;
         let text = format!(
             "body `{}`: elements with enhanced strains near ({}, {}, {}) lose more of their volume than their material feels, {:.1} % \
@@ -59,33 +78,38 @@ impl March<'_, '_> {
             100.0 * worst.lost[1],
         );
         let blocks = unfelt.iter().filter(|h| h.layered);
-        let lost: Vec<_> = blocks.map(|h| (h.body, h.at)).collect();
-        let helps = match worst.layered {
-            true => HOLDS,
-            false => "a finer mesh follows farther",
-        };
-        self.gave_way(
-            &lost,
-            (worst.body, text, "lose more of their volume"),
-            helps,
-        )
+        Some(GaveWay {
+            lost: blocks.map(|h| (h.body, h.at)).collect(),
+            body: worst.body,
+            text,
+            what: "lose more of their volume",
+            helps: match worst.layered {
+                true => HOLDS,
+                false => "a finer mesh follows farther",
+            },
+        })
     }
 
-    /// Ends the run where other elements may replace those of the bodies, else tells of the first of them once, wherever its elements
-    /// do so later. `what` they do is a part of the text, and `helps` ends it.
-    fn gave_way(
-        &mut self,
-        lost: &[(usize, Vec3)],
-        (body, text, what): (usize, String, &str),
-        helps: &str,
-    ) -> Option<Ending> {
-        let squeezed = self.may_be_replaced(lost);
-        if !squeezed.is_empty() {
-            return Some(Ending {
+    /// An ending, where other elements may replace those of some bodies.
+    pub(super) fn without(&self, gave_way: &[GaveWay]) -> Option<Ending> {
+        gave_way.iter().find_map(|gave_way| {
+            let squeezed = self.may_be_replaced(&gave_way.lost);
+            (!squeezed.is_empty()).then(|| Ending {
                 squeezed,
-                ..Ending::new(RunStatus::NotConverged, Some(text))
-            });
-        }
+                ..Ending::new(RunStatus::NotConverged, Some(gave_way.text.clone()))
+            })
+        })
+    }
+
+    /// Tells of elements that gave way in the accepted step once for what they do, wherever they do so later.
+    pub(super) fn tell_lost(&mut self, gave_way: GaveWay) {
+        let GaveWay {
+            lost: _,
+            body,
+            text,
+            what,
+            helps,
+        } = gave_way;
         let head = format!(
             "body `{}`: elements with enhanced strains near",
             self.model.bodies[body].name
@@ -97,7 +121,6 @@ impl March<'_, '_> {
                 number(self.progress.time)
             ));
         }
-        None
     }
 
     /// Those of the bodies that other elements may replace.

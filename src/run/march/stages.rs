@@ -1,88 +1,23 @@
 //! From one stage to the next: what a run hands over to the model of the next stage, and what is told of a stage at its end.
+use super::hand_over::{HandOver, evaluate};
 use super::start::Problem;
-use super::{Caller, Course, March, Outputs, RunState, StepControl};
-use crate::assembly::{Assembler, AssemblerMemory, Fault, Totals};
-use crate::contact::friction::history::PointHistory;
-use crate::contact::points::SlavePoint;
-use crate::machine::clock::Phases;
+use super::{Caller, March, RunState};
+use crate::assembly::{Assembler, Totals};
 use crate::model::loads::DeadLoad;
 use crate::model::stages::{StageModel, StageStart};
-use crate::model::state::{PointState, State};
+use crate::model::state::State;
 use crate::model::{Model, build};
 use crate::output::StageSummary;
 use crate::run::RunError;
-use crate::run::commit::{self, FrictionTotals};
-use crate::run::compliance::Compliance;
-use crate::run::cost::Cost;
-use crate::run::fields::Fields;
+use crate::run::commit::FrictionTotals;
 use crate::run::memory;
-use crate::run::peaks::Peaks;
-use crate::run::penalty_rule::PenaltyRule;
-use crate::run::progress::Progress;
-use crate::run::unseen::{Travel, Unseen};
-use crate::run::watch::Watch;
 use crate::scene::{LoadedScene, Scene};
 use crate::solve::event::{Event, Observer};
-use crate::solve::newton::Workspace;
-use crate::system::linear::Method;
 use covact_geometry::Vec3;
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Part of the largest force up to which the reactions of supports that were found, and what contacts that end still bear, are nothing.
 const NOTHING: f64 = 1e-6;
-
-/// What a contact pair remembers.
-struct PairState {
-    points: Vec<PointState>,
-    nodes: Vec<bool>,
-    histories: Vec<PointHistory>,
-    cut: Option<Arc<[SlavePoint]>>,
-    tractions: Vec<[f64; 2]>,
-}
-
-/// What a run hands over at the end of a stage.
-pub(in crate::run) struct HandOver {
-    start: StageStart,
-    time: f64,
-    /// Displacements, states of elements, and what stabilisation has dissipated.
-    u: Vec<f64>,
-    elements: Vec<f64>,
-    stabilized: f64,
-    pairs: Vec<PairState>,
-    /// Energy that contacts store.
-    stored: f64,
-    penalties: Vec<f64>,
-    ratios: Vec<f64>,
-    rebuilds: u32,
-    factorizations: BTreeMap<Method, u64>,
-    phases: Phases,
-    progress: Progress,
-    touched: Vec<bool>,
-    touching: Vec<bool>,
-    watch: Watch,
-    compliance: Compliance,
-    rule: PenaltyRule,
-    peaks: Peaks,
-    travels: Vec<Travel>,
-    cost: Cost,
-    files: Option<super::KeptFiles>,
-    stages: Vec<StageSummary>,
-}
-
-/// The residual of a state at all degrees of freedom, with what was summed.
-fn evaluate(
-    assembler: &mut Assembler,
-    state: &State,
-    time: f64,
-) -> Result<(Vec<f64>, Totals), RunError> {
-    let n = state.u.len();
-    let (mut residual, mut rhs) = (vec![0.0; n], vec![0.0; n]);
-    let totals = (assembler.linearize(&mut state.clone(), time, None, &mut residual, &mut rhs))
-        .map_err(|e| RunError::internal(&e))?;
-    Ok((residual, totals))
-}
 
 /// The largest force of a tool, or between bodies.
 fn largest(totals: &Totals) -> f64 {
@@ -134,46 +69,8 @@ impl RunState<'_> {
             released: Vec::new(),
             held: Vec::new(),
         };
-        let mut first = 0;
-        let mut pairs = Vec::new();
-        for (pair, own) in model.pairs.iter().enumerate() {
-            let count = state.slaves(model, pair).len();
-            let nodes = own.averaged.as_ref().map_or(0..0, |nodes| nodes.range());
-            let history = state.history(model, pair).unwrap_or(0..0);
-            pairs.push(PairState {
-                points: state.points[first..first + count].to_vec(),
-                nodes: state.nodes[nodes].to_vec(),
-                histories: state.histories[history.clone()].to_vec(),
-                cut: state.cuts.get(pair).cloned().flatten(),
-                tractions: self.watch.tractions(history).to_vec(),
-            });
-            first += count;
-        }
-        Ok(HandOver {
-            start,
-            time,
-            u: state.u.clone(),
-            elements: state.elements.clone(),
-            stabilized: state.stabilized,
-            pairs,
-            stored: totals.contact_energy + all.stored,
-            penalties: self.assembler.penalties.clone(),
-            ratios: self.assembler.ratios.clone(),
-            rebuilds: self.assembler.rebuilds(),
-            factorizations: self.workspace.factorizations.clone(),
-            phases: std::mem::take(&mut self.phases),
-            progress: self.progress.clone(),
-            touched: self.touched.clone(),
-            touching: self.touching.clone(),
-            watch: self.watch.clone(),
-            compliance: self.compliance.clone(),
-            rule: self.rule.clone(),
-            peaks: self.peaks.clone(),
-            travels: self.unseen.between.travels(model),
-            cost: std::mem::replace(&mut self.cost, Cost::start()),
-            files: self.files.clone(),
-            stages: self.stages.clone(),
-        })
+        let stored = totals.contact_energy + all.stored;
+        Ok(self.taken_apart(start, stored))
     }
 
     /// Tells what is known of a stage once the last step of it is accepted, or where it is `cut` short.
@@ -245,7 +142,7 @@ impl RunState<'_> {
 
 impl FrictionTotals {
     /// Those of the pairs `of` at an accepted state.
-    fn of(
+    pub(super) fn of(
         model: &Model,
         assembler: &Assembler,
         state: &State,
@@ -305,62 +202,6 @@ impl HandOver {
         }
         Ok((model, state))
     }
-
-    /// The state of the stage before as one of the model of the next.
-    fn state(&self, model: &Model) -> Result<State, Fault> {
-        let mut state = State::new(model);
-        state.u.copy_from_slice(&self.u);
-        state.elements.copy_from_slice(&self.elements);
-        state.stabilized = self.stabilized;
-        let mut points = Vec::with_capacity(state.points.len());
-        let mut begins = BTreeSet::new();
-        for (index, (pair, before)) in model.pairs.iter().zip(&self.pairs).enumerate() {
-            let acts = !pair.points.is_empty();
-            if acts && before.points.is_empty() {
-                begins.insert(index);
-                points.resize(points.len() + pair.points.len(), PointState::default());
-                continue;
-            }
-            if !acts {
-                continue;
-            }
-            points.extend_from_slice(&before.points);
-            if let Some(nodes) = &pair.averaged {
-                state.nodes[nodes.range()].copy_from_slice(&before.nodes);
-            }
-            if let Some(cut) = state.cuts.get_mut(index) {
-                cut.clone_from(&before.cut);
-            }
-        }
-        state.points = points;
-        state.forget_histories(model);
-        for (index, before) in self.pairs.iter().enumerate() {
-            if let Some(range) = state.history(model, index)
-                && range.len() == before.histories.len()
-            {
-                state.histories[range].copy_from_slice(&before.histories);
-            }
-        }
-        if !begins.is_empty() {
-            let mut masters = crate::model::master::Masters::new(model);
-            let begins = |index: usize| begins.contains(&index);
-            commit::start(model, &mut masters, &mut state, (self.time, &begins))?;
-        }
-        Ok(state)
-    }
-
-    /// Gives an assembler what it carries on.
-    fn set(&self, assembler: &mut Assembler) -> Result<(), RunError> {
-        let memory = AssemblerMemory {
-            penalties: self.penalties.clone(),
-            ratios: self.ratios.clone(),
-            rebuilds: self.rebuilds,
-            ..assembler.memory()
-        };
-        assembler
-            .restore(&memory)
-            .map_err(|e| RunError::internal(&e))
-    }
 }
 
 impl<'m> RunState<'m> {
@@ -375,95 +216,19 @@ impl<'m> RunState<'m> {
         threads: usize,
         observer: &mut (dyn Observer + Send),
     ) -> Result<Self, RunError> {
-        let (loaded, model) = (&problem.loaded, &problem.model);
-        let mut assembler =
-            Assembler::new(model, &model.dofs).map_err(|e| memory::pattern(loaded, &e))?;
-        hand.set(&mut assembler)?;
-        hand.watch.in_equilibrium(&mut assembler);
-        let (residual, totals) = evaluate(&mut assembler, &committed, hand.time)?;
-        let solver = super::start::analysed(loaded, model, &mut assembler, threads)?;
-        let stored = totals.contact_energy
-            + FrictionTotals::of(model, &assembler, &committed, &|_| true).stored;
-        hand.set(&mut assembler)?;
-        let acting = |pair: usize| !model.pairs[pair].points.is_empty();
-        let mut tractions = vec![[0.0; 2]; committed.histories.len()];
-        for (pair, before) in hand.pairs.iter().enumerate() {
-            if let Some(range) = committed.history(model, pair)
-                && range.len() == before.tractions.len()
-            {
-                tractions[range].copy_from_slice(&before.tractions);
-            }
-        }
-        let HandOver {
-            time,
-            factorizations,
-            phases,
-            progress,
-            touched,
-            touching,
-            watch,
-            compliance,
-            rule,
-            peaks,
-            travels,
-            cost,
-            files,
-            stages,
-            stored: before,
-            ..
-        } = hand;
-        let watch = watch.enter(
-            model,
-            &assembler,
-            (&residual, &totals),
-            (stored - before, tractions),
-        );
-        let walk = StepControl::new(loaded, model);
-        let mut workspace = Workspace::new(model);
-        workspace.factorizations = factorizations;
-        let mut outputs = Outputs {
-            fields: Fields::new(model, &loaded.scene.output)?,
-            row: Vec::new(),
-        };
-        outputs.fields.went_on();
-        let mut run = RunState {
-            problem,
-            assembler,
-            solver,
-            workspace,
-            phases,
-            progress,
-            touched,
-            touching: (touching.into_iter().enumerate())
-                .map(|(pair, touching)| touching && acting(pair))
-                .collect(),
-            watch,
-            compliance,
-            rule,
-            peaks,
-            unseen: Unseen::new(
-                model,
-                problem.loaded.scene.solution.end_time,
-                &problem.may_see,
-            ),
-            cost,
-            course: Course {
-                trial: committed.clone(),
-                committed,
-                walk,
-                outputs,
-            },
-            files,
-            stages,
-        };
-        run.unseen.between.go_on(&travels);
+        let time = hand.time;
+        let (mut run, acting) = RunState::taken_over(problem, hand, committed, threads)?;
+        let (model, state) = (&problem.model, &run.course.committed);
+        let sliding = FrictionTotals::of(model, &run.assembler, state, &|_| true);
+        let stored = acting.totals.contact_energy + sliding.stored;
+        run.acts(acting, stored);
         let never = AtomicBool::new(false);
         let (mut march, course) = run.march(Caller {
             observer,
             interrupt: &never,
         });
         march.gather(&mut course.outputs, &course.committed, time)?;
-        march.tell_stage(&loaded.scene);
+        march.tell_stage(&problem.loaded.scene);
         Ok(run)
     }
 }

@@ -4,8 +4,8 @@ use super::changes::Changes;
 use super::smooth::{flat_again, with_smooth_below};
 use super::substitute::instead_of_kept;
 use super::variant::{
-    Safe, safe_variant, seeing_less, with_edges, with_exchanged, with_points, with_rims,
-    with_sides, with_smooth,
+    BEGUN, Safe, WENT_ON, safe_variant, seeing_less, with_edges, with_exchanged, with_points,
+    with_rims, with_sides, with_smooth,
 };
 use super::{Rims, Simulation, running};
 use crate::model::BodyModel;
@@ -125,7 +125,14 @@ impl Simulation<'_> {
             let safe = if ending.on_rims { rims() } else { None };
             points(safe.as_ref().or(before)).or(safe)
         };
-        let safe = || safe_variant(&self.scene, before, squeezed, (time, &self.history));
+        let safe = || {
+            safe_variant(
+                &self.scene,
+                before,
+                squeezed,
+                (time, &self.history, ending.accepted),
+            )
+        };
         let contacts = || edges().or_else(exchanged).or_else(sides).or_else(smooth);
         let kept = self.kept_elements();
         let kept_none = kept.is_none();
@@ -175,6 +182,9 @@ impl Simulation<'_> {
         let contacts = |safe: &Safe| safe.loaded.scene.contacts.clone();
         if before.map_or(&self.scene, |b| &b.loaded).scene.contacts != contacts(&safe) {
             safe.former = None;
+        }
+        for text in &mut safe.changed {
+            *text = text.replace(WENT_ON, BEGUN);
         }
         let spent = run.give_up();
         let observer = &mut *self.options.observer;

@@ -1,6 +1,7 @@
 //! A run in memory: stepped from outside or run through, with its results at hand and no file touched.
 mod again;
 mod changes;
+mod elements;
 mod joined;
 mod read;
 mod smooth;
@@ -79,7 +80,7 @@ pub struct Step {
     pub iterations: u32,
     /// How many times the step was cut before.
     pub cuts: u32,
-    /// Which run it belongs to: 1, or more where the run began again with other elements ([`Simulation::step`]).
+    /// Which run it belongs to: 1, or more where the run began again with other points or elements ([`Simulation::step`]).
     pub attempt: u32,
 }
 
@@ -317,14 +318,9 @@ fn running(
     observer: &mut (dyn Observer + Send),
 ) -> Result<Running, RunError> {
     let cost = Cost::start();
-    let (loaded, changed, notes, kept) = match safe {
-        None => (scene, &[][..], &[][..], &[][..]),
-        Some(safe) => (
-            &safe.loaded,
-            &safe.changed[..],
-            &safe.notes[..],
-            &safe.kept[..],
-        ),
+    let (loaded, changed, notes) = match safe {
+        None => (scene, &[][..], &[][..]),
+        Some(safe) => (&safe.loaded, &safe.changed[..], &safe.notes[..]),
     };
     let mut phases = Phases::new();
     phases.start("model");
@@ -348,6 +344,21 @@ fn running(
     for text in &model.warnings {
         observer.event(&Event::Warning { text: text.clone() });
     }
+    let problem = Box::new(problem(scene, (loaded, safe), (model, plan, stage), rims));
+    let threads = rayon::current_num_threads();
+    Running::try_new(problem, |problem| {
+        RunState::new(problem, (phases, cost), threads, sections, observer)
+    })
+}
+
+/// What a run of `loaded`, the scene as given or in another form, solves, and what it may be repeated with.
+fn problem(
+    scene: &LoadedScene,
+    (loaded, safe): (&LoadedScene, Option<&Safe>),
+    (model, plan, stage): (Model, Plan, StageStart),
+    rims: Rims,
+) -> Problem {
+    let kept = safe.map_or(&[][..], |safe| &safe.kept);
     let last = rims == Rims::Last;
     let replaceable = (loaded.scene.bodies.iter())
         .filter(|_| !last)
@@ -379,7 +390,7 @@ fn running(
     };
     let block = |name: &str| again::is_block(&model.bodies, name);
     let sides_may = with_sides(loaded, None, None, &block).is_some();
-    let problem = Box::new(Problem {
+    Problem {
         loaded: loaded.clone(),
         model,
         plan,
@@ -393,9 +404,5 @@ fn running(
             _ => Patience::Long,
         },
         changes: Changes::of(scene, safe, rims).text(),
-    });
-    let threads = rayon::current_num_threads();
-    Running::try_new(problem, |problem| {
-        RunState::new(problem, (phases, cost), threads, sections, observer)
-    })
+    }
 }

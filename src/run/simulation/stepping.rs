@@ -9,8 +9,9 @@ use std::sync::Arc;
 
 impl Simulation<'_> {
     /// Goes on to the next accepted step, with as many cuts and retries as it takes; `None` once the run has reached its
-    /// end time. Where the default elements of a body give way in strong compression, the run begins again at time 0 with
-    /// others for it, and what is returned is its first step ([`Step::attempt`]).
+    /// end time. Where its defaults turn out to be unfit (slave points that miss what lies between them, elements that were too
+    /// soft before they gave way), the run begins again at time 0 with others, and what is returned is its first step
+    /// ([`Step::attempt`]).
     ///
     /// # Errors
     /// [`StepError`]; the simulation stays at the last accepted step.
@@ -38,6 +39,9 @@ impl Simulation<'_> {
                 if self.status() == Some(RunStatus::Interrupted) {
                     self.conclude();
                     return Err(StepError::Interrupted);
+                }
+                if step.is_none() && !reached && self.exchange_elements()? {
+                    continue;
                 }
                 self.close(sinks)?;
                 if reached {

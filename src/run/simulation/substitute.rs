@@ -23,14 +23,23 @@ pub(super) struct Former {
     pub bodies: Vec<String>,
     /// Times and strain energies of its steps (energy).
     energies: Vec<[f64; 2]>,
+    /// The last of them was accepted before its elements were looked into: what they answered in it may be no measure any more. Those of
+    /// older checkpoints do not say.
+    #[serde(default = "accepted")]
+    accepted: bool,
+}
+
+fn accepted() -> bool {
+    true
 }
 
 impl Former {
-    /// The run of a history.
-    pub fn new(bodies: Vec<String>, history: &Table) -> Self {
+    /// The run of a history, whose last step was `accepted` before its elements were looked into, or is sound.
+    pub fn new(bodies: Vec<String>, history: &Table, accepted: bool) -> Self {
         Former {
             bodies,
             energies: energies(history),
+            accepted,
         }
     }
 
@@ -39,9 +48,9 @@ impl Former {
         self.energies.last().map_or(0.0, |last| last[0])
     }
 
-    /// The step before: what they answered in the last one may be no measure any more.
+    /// The last step in which they held.
     fn sound(&self) -> f64 {
-        let before = self.energies.len().checked_sub(2);
+        let before = (self.energies.len()).checked_sub(1 + usize::from(self.accepted));
         before.map_or(0.0, |step| self.energies[step][0])
     }
 
@@ -200,6 +209,7 @@ mod tests {
         let former = Former::new(
             vec!["b".to_owned()],
             &history(&of(1.0, &[0.1, 0.2, 0.5, 1.0])),
+            true,
         );
         assert_eq!(former.end(), 1.0);
         let [_, same] = former.differs(&history(&of(1.0, &[0.15, 0.4, 0.7])));
@@ -227,7 +237,7 @@ mod tests {
         .unwrap();
         let steps = history(&[[0.1, 1.0], [0.2, 4.0], [0.3, 5.0]]);
         let element = |safe: &Safe| safe.loaded.scene.bodies["b"].element;
-        let replaced = safe_variant(&scene, None, ["b"].into_iter(), (0.3, &steps)).unwrap();
+        let replaced = safe_variant(&scene, None, ["b"].into_iter(), (0.3, &steps, true)).unwrap();
         assert_eq!(element(&replaced), Element::H8MeanDilatation);
         assert!(instead_of_kept(Some(&replaced)).is_none());
         let former = replaced.former.clone().unwrap();

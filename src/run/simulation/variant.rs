@@ -15,6 +15,10 @@ use crate::scene::{
 const SEEING: u8 = 3;
 const SEEING_SHEETS: u8 = 10;
 
+/// How a run goes on with other elements: from time 0, or from where the others gave way.
+pub(super) const BEGUN: &str = "the run was repeated with";
+pub(super) const WENT_ON: &str = "from there the run went on with";
+
 /// A scene with other elements or passes than the default ones, and what is told of the change.
 #[derive(Debug, Clone)]
 pub(super) struct Safe {
@@ -54,7 +58,7 @@ pub(super) fn safe_variant<'n>(
     scene: &LoadedScene,
     before: Option<&Safe>,
     squeezed: impl Iterator<Item = &'n str>,
-    (time, history): (f64, &Table),
+    (time, history, accepted): (f64, &Table, bool),
 ) -> Option<Safe> {
     let when = format!("gave way at time {}", number(time));
     let mut safe = None;
@@ -67,7 +71,7 @@ pub(super) fn safe_variant<'n>(
         }
     }
     if let Some(safe) = &mut safe {
-        safe.former = Some(Former::new(bodies, history));
+        safe.former = Some(Former::new(bodies, history, accepted));
     }
     safe
 }
@@ -84,7 +88,7 @@ fn replaced(scene: &LoadedScene, before: Option<&Safe>, body: &str, when: &str) 
     }
     *element = Element::H8MeanDilatation;
     safe.changed.push(format!(
-        "body `{body}`: its default elements (`h8`) {when}, as they do under large strains; the run was repeated with \
+        "body `{body}`: its default elements (`h8`) {when}, as they do under large strains; {BEGUN} \
          `h8_mean_dilatation` for it, which bends less well: refine it where it bends, and name the `element` to have one of them \
          from the start"
     ));

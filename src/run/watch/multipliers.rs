@@ -63,7 +63,7 @@ impl Watch {
         adjusted
     }
 
-    pub(super) fn keep_tractions(&mut self, answers: &[Option<PointAnswer>]) {
+    pub(in crate::run) fn keep_tractions(&mut self, answers: &[Option<PointAnswer>]) {
         for (kept, answer) in self.tractions.iter_mut().zip(answers) {
             *kept = traction(answer);
         }
