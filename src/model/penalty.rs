@@ -121,17 +121,32 @@ pub struct Ruled {
     pub deepest: f64,
     /// Half of the layer of elements behind the points: what lies deeper under it is told (length).
     pub half: f64,
+    /// Of contacts that a stage releases: the thickness of the body (length).
+    pub released: Option<f64>,
+}
+
+impl Ruled {
+    /// Penetration above which it is raised whatever the error of forces (length), where the master is curved by `radius` (length; zero
+    /// where it is not known, or has an edge).
+    pub fn limit(&self, radius: f64) -> f64 {
+        let Some(t) = self.released else {
+            return self.deepest;
+        };
+        let gentle = radius / (TIGHT * t);
+        (RELEASED * t * gentle.powi(2).max(1.0)).min(self.deepest)
+    }
 }
 
 /// Part of the depth of an element layer, or of its edges where they are shorter, that a point may sink in under a ruled
 /// penalty: the layers of a stack are to stay apart.
 const DEEPEST: f64 = 0.1;
 
-/// As [`DEEPEST`], of contacts that a stage releases, and of the thickness of the body. A sheet of metal that sinks into its tool
-/// where it lifts off is bent further than the tool by that, and unloads as it settles: bent further by a hundredth at R/t 50 it
-/// loses a twelfth of its springback, and forces tell little of it. This much bends a sheet at R/t 5 further by two
-/// ten-thousandths, and any other by less.
+/// As [`DEEPEST`], of contacts that a stage releases, and of the thickness of the body, on tools of a radius of [`TIGHT`] thicknesses. A
+/// sheet of metal that sinks into its tool by `d` where it lifts off is bent further than the tool by the part `d/R`, and unloads as it
+/// settles, and forces tell little of it. Springback takes the part `3 s R / (E t)` of the curvature (s: yield stress), so that what
+/// it errs by grows as `d t / R^2`: this much is a hundredth of it for `E/s = 700`. On a flat tool no sheet is bent by what it sinks in.
 const RELEASED: f64 = 1e-3;
+const TIGHT: f64 = 5.0;
 
 /// Penalties that suit a side of a contact, or both (force / length^3).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -144,11 +159,19 @@ pub struct Suitable {
     pub stiffest: f64,
     /// Penetration that is too deep (length).
     pub deepest: f64,
-    /// The same, in contacts that a stage releases (length).
-    pub released: f64,
+    /// Thickness of the body, of the thinner of two (length).
+    pub thickness: f64,
 }
 
 impl Suitable {
+    /// Penetration that a penalty is to start from, also in contacts that are `released`, whatever the curvature of their masters.
+    pub fn first_depth(&self, released: bool) -> f64 {
+        match released {
+            true => self.deepest.min(RELEASED * self.thickness),
+            false => self.deepest,
+        }
+    }
+
     /// Half of the layer of elements that [`Self::deepest`] is a part of (length).
     pub fn half_of_layer(&self) -> f64 {
         0.5 / DEEPEST * self.deepest
@@ -167,7 +190,7 @@ impl Suitable {
             },
             stiffest: solid * WARNED / FACTOR,
             deepest: DEEPEST * size.edge.min(size.depth),
-            released: RELEASED * size.thickness,
+            thickness: size.thickness,
         }
     }
 
@@ -184,7 +207,7 @@ impl Suitable {
             start: self.start.min(other.start),
             stiffest: self.stiffest.min(other.stiffest),
             deepest: self.deepest.min(other.deepest),
-            released: self.released.min(other.released),
+            thickness: self.thickness.min(other.thickness),
         }
     }
 }
@@ -198,4 +221,71 @@ pub fn automatic(material: &Material, size: &FaceSize) -> f64 {
 /// Poisson's ratio of a material.
 pub fn poisson(material: &Material) -> f64 {
     material.elastic().nu
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::closest::ClosestPoint;
+    use crate::model::build::build;
+    use serde_json::json;
+
+    /// A sheet that is let go may sink into a tool by what bends it further by the same part of its springback, whatever the radius.
+    #[test]
+    fn released_sheets_sink_in_by_what_bends_them_further() {
+        let ruled = Ruled {
+            accuracy: ACCURACY,
+            stiffest: 1.0,
+            deepest: 0.1,
+            half: 0.5,
+            released: Some(2.0),
+        };
+        let limits = [0.0, 4.0, 10.0, 30.0, 100.0, f64::INFINITY].map(|r| ruled.limit(r));
+        let expected = [2e-3, 2e-3, 2e-3, 18e-3, 0.1, 0.1];
+        for (limit, expected) in limits.iter().zip(expected) {
+            assert!((limit / expected - 1.0).abs() < 1e-12, "{limits:?}");
+        }
+        let lasting = Ruled {
+            released: None,
+            ..ruled
+        };
+        assert_eq!([0.0, f64::INFINITY].map(|r| lasting.limit(r)), [0.1; 2]);
+    }
+
+    /// Of exact surfaces the radius is known at every point, of facets it is not.
+    #[test]
+    fn radii_of_tools_are_those_at_their_points() {
+        let scene = json!({
+            "covact": 1,
+            "materials": { "m": { "neo_hooke": { "E": 1, "nu": 0.3 } } },
+            "bodies": { "b": {
+                "mesh": { "block": { "min": [-1, -1, -1], "max": [1, 1, 0], "elements": [1, 1, 1] } }, "material": "m"
+            } },
+            "surfaces": {
+                "a": { "cylinder": { "radius": 6, "length": 8, "center": [0, 0, 7], "axis": [0, 1, 0] }, "side": "outward" },
+                "b": { "plane": { "center": [0, 0, 1], "normal": [0, 0, -1], "size": [8, 8] } },
+                "c": { "sphere": { "radius": 3, "center": [0, 0, 4] }, "side": "outward" },
+                "d": {
+                    "sphere": { "radius": 3, "center": [0, 0, 4] }, "facets": { "kind": "bilinear", "count": [12, 12] }, "side": "outward"
+                }
+            },
+            "contacts": {
+                "a": { "slave": "b.top", "master": "a" }, "b": { "slave": "b.top", "master": "b" },
+                "c": { "slave": "b.top", "master": "c" }, "d": { "slave": "b.top", "master": "d" }
+            },
+            "supports": { "s": { "on": "b.bottom", "fixed": true } }
+        });
+        let loaded = crate::scene::parse(&scene.to_string(), "scene.json").expect("a scene");
+        let model = build(&loaded).expect("a model");
+        let radii = model.surfaces.iter().map(|surface| {
+            let q = covact_geometry::Vec3::new(0.3, 0.2, 0.5);
+            let foot = surface.set.project(&q, None, f64::INFINITY);
+            surface.radius_at(foot.expect("a foot").hint())
+        });
+        let radii: Vec<f64> = radii.collect();
+        assert!((radii[0] - 6.0).abs() < 1e-9, "{radii:?}");
+        assert!(radii[1] > 1e12, "{radii:?}");
+        assert!((radii[2] - 3.0).abs() < 1e-9, "{radii:?}");
+        assert_eq!(radii[3], 0.0);
+    }
 }

@@ -5,7 +5,7 @@ use crate::contact::closest::ClosestPoint;
 use crate::contact::rigid::RigidMaster;
 use crate::scene::{FacetKind, ValueError};
 use covact_geometry::project::{ComponentSide, EdgeReport, SideError};
-use covact_geometry::{Bilinear, Biquadratic, Foot, Hint, Jet, NurbsPatch, PatchSet, Vec3};
+use covact_geometry::{Bilinear, Biquadratic, Foot, Frame, Hint, Jet, NurbsPatch, PatchSet, Vec3};
 
 /// A rigid surface.
 #[derive(Debug)]
@@ -168,6 +168,19 @@ impl SurfaceModel {
             }
             other => other.count(),
         }
+    }
+
+    /// Smallest radius of curvature at a point, either way; infinite where it is flat, and zero where that is not known.
+    pub fn radius_at(&self, hint: Hint) -> f64 {
+        let SurfaceSet::Nurbs(set) = &self.set else {
+            return 0.0;
+        };
+        let patch = set.patches().get(hint.patch as usize);
+        let frame = patch.and_then(|patch| Frame::new(&patch.jet(hint.xi), 1.0));
+        frame.map_or(0.0, |frame| {
+            let [low, high] = frame.principal_curvatures();
+            low.abs().max(high.abs()).recip()
+        })
     }
 
     /// Smallest convex radius of those pieces of the patches for whose boxes `counts` holds.

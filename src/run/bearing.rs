@@ -1,6 +1,7 @@
 //! Which slave points carry the force of a contact, and what its penalty stores: sums over the points of a pair that
 //! [`super::fields::Fields::gather`] makes of what it knows of every point.
 use crate::contact::points::SlavePoint;
+use crate::model::penalty::Ruled;
 use crate::model::sharp::{Lines, SharpEdges};
 use crate::model::{Model, sharp};
 use covact_geometry::{Hint, Vec3};
@@ -60,6 +61,8 @@ pub struct Bearing {
     largest: [f64; FEW - 1],
     /// The point that is deepest below the master, without those whose penetration is prescribed.
     pub deepest: Option<Deepest>,
+    /// The largest penetration of these points relative to what is too deep there, where the run chooses the penalty.
+    pub sunk: f64,
 }
 
 impl Bearing {
@@ -229,7 +232,7 @@ impl Bearings {
     }
 
     /// Adds a point or node of a pair that is in contact.
-    pub fn add(&mut self, pair: usize, carrier: &Carrier) {
+    pub fn add(&mut self, model: &Model, pair: usize, carrier: &Carrier) {
         let Carrier {
             index,
             pressure,
@@ -254,9 +257,11 @@ impl Bearings {
             sum.energy += energy;
             return;
         };
+        let mut at_edge = false;
         if let Some((borders, reach)) = &self.borders[pair] {
             let (patch, x) = (place.hint.patch, &place.local);
             let sharp = (self.edges[pair].as_ref()).is_some_and(|e| e.near(patch, x, *reach));
+            at_edge = sharp;
             if sharp {
                 sum.at_edges += force;
                 if force > sum.at_edge.map_or(0.0, |most| most.force) {
@@ -276,6 +281,11 @@ impl Bearings {
             return;
         }
         sum.energy += energy;
+        if let Some(ruled) = &model.pairs[pair].ruled {
+            sum.sunk = sum
+                .sunk
+                .max(-gap / limit(model, pair, ruled, place.hint, at_edge));
+        }
         if -gap > sum.deepest.map_or(0.0, |d| d.depth) {
             sum.deepest = Some(Deepest {
                 depth: -gap,
@@ -284,6 +294,13 @@ impl Bearings {
             });
         }
     }
+}
+
+/// Penetration that is too deep at a point of a pair.
+fn limit(model: &Model, pair: usize, ruled: &Ruled, hint: Hint, at_edge: bool) -> f64 {
+    let surface = model.pairs[pair].rigid_master();
+    let surface = surface.filter(|_| ruled.released.is_some() && !at_edge);
+    ruled.limit(surface.map_or(0.0, |s| model.surfaces[s].radius_at(hint)))
 }
 
 /// Whether supports prescribe the displacement of a point along a direction.

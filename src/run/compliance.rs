@@ -222,8 +222,8 @@ impl Compliance {
         for ((sunk, sum), pair) in
             (found.sunk.iter_mut().zip(&end.bearings.pairs)).zip(&model.pairs)
         {
-            if let (Some(ruled), Some(deepest)) = (&pair.ruled, &sum.deepest) {
-                *sunk = deepest.depth / ruled.deepest;
+            if pair.ruled.is_some() {
+                *sunk = sum.sunk;
             }
         }
         let errors = &mut found.forces;

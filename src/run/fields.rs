@@ -237,7 +237,7 @@ impl Fields {
                         share: pair.share(),
                         place: None,
                     };
-                    self.bearings.add(index, &carrier);
+                    self.bearings.add(model, index, &carrier);
                 }
                 first += points.len();
                 continue;
@@ -325,7 +325,7 @@ impl Fields {
                             normal,
                         }),
                     };
-                    self.bearings.add(index, &carrier);
+                    self.bearings.add(model, index, &carrier);
                 }
                 if gap < self.smallest_gap {
                     self.smallest_gap = gap;

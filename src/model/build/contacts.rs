@@ -267,16 +267,15 @@ impl Builder<'_> {
                 (suits.impact(), None)
             }
             (Penalty::Auto, None) => {
-                let deepest = match self.scene.releases(name) {
-                    true => suits.released.min(suits.deepest),
-                    false => suits.deepest,
-                };
+                let releases = self.scene.releases(name);
                 let ruled = penalty::Ruled {
                     accuracy: contact.accuracy.unwrap_or(penalty::ACCURACY),
                     stiffest: suits.stiffest,
-                    deepest,
+                    deepest: suits.deepest,
                     half: suits.half_of_layer(),
+                    released: releases.then_some(suits.thickness),
                 };
+                let deepest = suits.first_depth(releases);
                 let master = match &master {
                     Master::Body(master) => Some(master.body),
                     Master::Rigid(_) => None,

@@ -6,6 +6,7 @@ use crate::model::error::number;
 use crate::model::penalty;
 use crate::model::state::State;
 use crate::run::RunError;
+use crate::run::bearing::Bearing;
 use crate::run::commit::FrictionTotals;
 use crate::run::compliance::{Errors, StepEnd};
 use crate::run::history;
@@ -117,13 +118,15 @@ impl March<'_, '_> {
     }
 
     /// Tells where points lie deep in their master under a penalty that the run chooses, beside the layer of elements behind them.
-    fn tell_sunk(&mut self, errors: &Errors) {
+    fn tell_sunk(&mut self, bearings: &[Bearing]) {
         if self.model.dynamics.is_some() {
             return;
         }
-        for (pair, sunk) in self.model.pairs.iter().zip(&errors.sunk) {
-            let Some(ruled) = pair.ruled else { continue };
-            let depth = sunk * ruled.deepest;
+        for (pair, bearing) in self.model.pairs.iter().zip(bearings) {
+            let (Some(ruled), Some(deepest)) = (pair.ruled, bearing.deepest) else {
+                continue;
+            };
+            let depth = deepest.depth;
             if depth <= ruled.half {
                 continue;
             }
@@ -199,7 +202,7 @@ impl March<'_, '_> {
         };
         let mut all = errors.clone();
         self.compliance.add_lasting(&end, &mut all);
-        self.tell_sunk(&errors);
+        self.tell_sunk(&outputs.fields.bearings.pairs);
         self.adapt([errors, all], growth, converged);
         let bearings = &outputs.fields.bearings;
         let residual = converged.history.last().map_or(0.0, |last| last.0);

@@ -78,6 +78,7 @@ histories!(
     ball_on_plate,
     bend_and_release,
     crossed_tubes,
+    deep_cup,
     draw_bead,
     drop,
     flanged_panel,
@@ -98,6 +99,7 @@ histories!(
     strip_drawn,
     strip_over_cylinder,
     tubes_crossed_nurbs,
+    u_channel,
 );
 
 /// Names of the files of a folder with this ending, less the ending.

@@ -140,3 +140,17 @@ pub fn tubes_crossed_nurbs(scene: &mut Value) {
     }
     end(scene, 1.2);
 }
+
+/// Drawn in a little.
+pub fn deep_cup(scene: &mut Value) {
+    set(scene, "/stages/0/tools/punch/2", json!(-0.5));
+}
+
+/// Bent into the die without a holder, a little.
+pub fn u_channel(scene: &mut Value) {
+    set(scene, "/stages/0/tools/punch/2", -1);
+    for (part, name) in [("contacts", "under_holder"), ("surfaces", "holder")] {
+        let part = scene[part].as_object_mut().expect("an object");
+        part.remove(name).expect("the holder");
+    }
+}
