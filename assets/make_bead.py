@@ -17,24 +17,13 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from occt_iges import bezier, write
+from profiles import arc, line
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 R, H = 8.0, 20.0
 S, B, G = 8.0, 10.0, 16.0
 RAMP = 20.0  # length of the ramps outside
 WIDTH = [-2.0, 4.0]
-
-
-def line(p, q):
-    return [(p, 1.0), (q, 1.0)]
-
-
-def arc(x, z, radius, start, end):
-    """About (x, z); angles in degrees from the x axis towards z, less than 180 apart."""
-    start, end = math.radians(start), math.radians(end)
-    w = math.cos((end - start) / 2)
-    angles = ((start, 1.0), ((start + end) / 2, w), (end, 1.0))
-    return [((x + radius * math.cos(a) / k, z + radius * math.sin(a) / k), k) for a, k in angles]
 
 
 def tool(name, left, middle=()):

@@ -1,7 +1,7 @@
 """Makes the tools of the scenes `u_channel` and `deep_cup` (cad/u_*.igs, cad/cup_*.igs) and the blank of the latter
-(mesh/cup_blank.inp); lengths in mm. Exact patches (IGES entity 128), no other module is needed.
+(mesh/cup_blank.inp); lengths in mm. Exact patches; `covact convert` writes them as IGES.
 
-    python make_forming.py cad mesh
+    python make_forming.py [COVACT]
 
 u_punch.igs, u_die.igs, u_holder.igs    NUMISHEET'93 2-D draw bending, the half with x > 0, extruded along y. The top of the die and the
                                         bottoms of punch and holder lie in z = 0; the scene places them.
@@ -20,63 +20,37 @@ cup_blank.inp                           mid-surface of a quarter of a round blan
                                         blocks of n x m elements around it.
 """
 
+import json
 import math
 import os
+import subprocess
 import sys
+import tempfile
 
-CAD, MESH = sys.argv[1:] if len(sys.argv) == 3 else (".", ".")
+from profiles import arc, line
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PROGRAM = sys.argv[1] if len(sys.argv) > 1 else "covact"
 
 
 def write(name, patches):
-    """Free-standing surfaces (entity 128) with all digits: points[i][j] and weights[i][j], i along the first direction."""
-    lines = {"S": [""], "G": [], "D": [], "P": []}
-    for at, (points, weights) in enumerate(patches):
-        n, m = len(points), len(points[0])
-        number = lambda x: repr(float(x) + 0.0)
-        knots = [[0.0] * k + [1.0] * k for k in (n, m)]
-        flat = all(w == 1 for row in weights for w in row)
-        fields = [128, n - 1, m - 1, n - 1, m - 1, 0, 0, int(flat), 0, 0]
-        values = [*map(str, fields), *map(number, knots[0] + knots[1])]
-        # The first direction runs fastest.
-        values += [number(weights[i][j]) for j in range(m) for i in range(n)]
-        values += [number(c) for j in range(m) for i in range(n) for c in points[i][j]]
-        values += ["0.", "1.", "0.", "1."]
-        first, own, line = len(lines["P"]) + 1, [], ""
-        for k, value in enumerate(values):
-            value += ";" if k + 1 == len(values) else ","
-            if len(line) + len(value) > 64:
-                own.append(line)
-                line = ""
-            line += value
-        own.append(line)
-        lines["P"] += [f"{text:<64}{2 * at + 1:>8}" for text in own]
-        lines["D"].append("".join(f"{x:>8}" for x in (128, first, 0, 0, 0, 0, 0, 0, "00000000")))
-        lines["D"].append("".join(f"{x:>8}" for x in (128, 0, 0, len(own), 0, "", "", "", 0)))
-    text = lambda s: f"{len(s)}H{s}"
-    head = ["", "", text(name), text(name), text("make_forming.py"), text("1"), "32", "308", "15", "308", "15", text(name)]
-    head += ["1.", "2", text("MM"), "1", "0.01", text("20260101.000000"), "1e-6", "1000.", text(""), text(""), "11", "0"]
-    head += [text("20260101.000000")]
-    head = ",".join(h if h != "0H" else "" for h in head) + ";"
-    lines["G"] = [head[k : k + 72] for k in range(0, len(head), 72)]
-    with open(os.path.join(CAD, name), "w") as file:
-        for section in "SGDP":
-            for k, line in enumerate(lines[section]):
-                file.write(f"{line:<72}{section}{k + 1:>7}\n")
-        counts = "".join(f"{s}{len(lines[s]):>7}" for s in "SGDP")
-        file.write(f"{counts:<72}T{1:>7}\n")
-    print(f"{name}: {len(patches)} patches")
-
-
-def line(p, q):
-    return [(p, 1.0), (q, 1.0)]
-
-
-def arc(x, z, radius, start, end):
-    """About (x, z); angles in degrees from the x axis towards z, less than 180 apart."""
-    start, end = math.radians(start), math.radians(end)
-    w = math.cos((end - start) / 2)
-    angles = ((start, 1.0), ((start + end) / 2, w), (end, 1.0))
-    return [((x + radius * math.cos(a) / k, z + radius * math.sin(a) / k), k) for a, k in angles]
+    """Patches of one Bezier piece each: points[i][j] and weights[i][j], i along the first direction."""
+    made = []
+    for number, (points, weights) in enumerate(patches, 1):
+        counts = len(points), len(points[0])
+        knots = [[0.0] * k + [1.0] * k for k in counts]
+        # Homogeneous; the first direction runs fastest.
+        places = [(i, j) for j in range(counts[1]) for i in range(counts[0])]
+        flat = [[*(weights[i][j] * c for c in points[i][j]), float(weights[i][j])] for i, j in places]
+        made.append({"entity": number, "degree": [k - 1 for k in counts], "knots": knots, "points": flat})
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "tool.json")
+        with open(path, "w", encoding="ascii") as file:
+            json.dump({"covact_geometry": 1, "unit": "mm", "resolution": None, "patches": made}, file)
+        tool = os.path.join(HERE, "cad", name)
+        if os.path.exists(tool):
+            os.remove(tool)
+        subprocess.run([PROGRAM, "convert", path, "-o", tool], check=True)
 
 
 def punch(half, radius, inner, height):
@@ -171,7 +145,7 @@ def blank(name, n, m, inner, radius):
     block(square, n, n, False)
     block(lambda u, v: outer(u, v, False), n, m, True)
     block(lambda u, v: outer(u, v, True), n, m, False)
-    with open(os.path.join(MESH, name), "w") as file:
+    with open(os.path.join(HERE, "mesh", name), "w") as file:
         file.write("*NODE\n")
         for k, (x, y) in enumerate(nodes):
             file.write(f"{k + 1}, {x:.9g}, {y:.9g}, 0\n")

@@ -18,7 +18,7 @@ mod start;
 mod summary;
 mod telling;
 
-pub(super) use elements::Unlike;
+pub(super) use elements::{ALIKE, Unlike};
 pub(super) use giving_up::Patience;
 pub(super) use outcome::{AcceptedStep, Ending, Outcome};
 pub(super) use restart::{Kept, KeptFiles, take_variant};

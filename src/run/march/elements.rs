@@ -14,8 +14,8 @@ use covact_geometry::Vec3;
 use std::sync::atomic::AtomicBool;
 
 /// Part of the strain energy, and of the largest force, by which the answers of both kinds of elements may differ where one goes on
-/// from the other.
-const ALIKE: f64 = 0.05;
+/// from the other, or stands for it without a word.
+pub(in crate::run) const ALIKE: f64 = 0.05;
 
 /// A run that goes on with other elements.
 pub(in crate::run) struct OtherElements {

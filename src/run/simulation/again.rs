@@ -183,6 +183,7 @@ impl Simulation<'_> {
         if before.map_or(&self.scene, |b| &b.loaded).scene.contacts != contacts(&safe) {
             safe.former = None;
         }
+        // Elements that were exchanged on the way are there from the start now.
         for text in &mut safe.changed {
             *text = text.replace(WENT_ON, BEGUN);
         }

@@ -5,12 +5,11 @@ use super::Simulation;
 use super::variant::Safe;
 use crate::model::error::number;
 use crate::output::{RunStatus, Table};
-use crate::run::march::{Caller, Ending};
+use crate::run::march::{ALIKE, Caller, Ending};
 use crate::scene::Element;
 use serde::{Deserialize, Serialize};
 
-/// Parts of the strain energy by which two runs differ: from one on it is told, from the other on the elements are kept.
-const TOLD: f64 = 0.05;
+/// Part of the strain energy by which two runs differ from which on the elements are kept; from [`ALIKE`] on it is told.
 const OTHER: f64 = 0.3;
 
 /// Part of the largest strain energy below which nothing is compared: first touches differ by more.
@@ -159,7 +158,7 @@ impl Simulation<'_> {
         if let Some(safe) = &mut self.safe {
             safe.former = None;
         }
-        if part > TOLD {
+        if part > ALIKE {
             let text = format!(
                 "body {}: at time {}, before its default elements gave way, its strain energy with `h8_mean_dilatation` is {:.0} % \
                  other than with these: forces, or displacements under given ones, may be off by as much",
