@@ -1,4 +1,6 @@
 //! Scenes that cases change.
+use super::CaseError;
+use covact_geometry::{NurbsPatch, Vec3};
 use serde_json::{Value, json};
 
 /// A step of `1 / steps` from time 0 to 1, a tolerance below what is compared, nothing written but the history.
@@ -41,4 +43,32 @@ pub fn block_under(tool: Value, n: u32, steps: u32) -> Value {
 /// is how the points see them.
 pub fn alone(scene: &mut Value) {
     scene["contacts"]["press"]["passes"] = "one".into();
+}
+
+/// Part of a cylinder along y about (x, 0, z) from one angle to another (from x towards z, radians), between two values of y.
+///
+/// # Errors
+/// The angles are the same, or half a turn apart.
+pub fn arc(
+    [x, z]: [f64; 2],
+    radius: f64,
+    [from, to]: [f64; 2],
+    y: [f64; 2],
+) -> Result<NurbsPatch, CaseError> {
+    let (half, middle) = (0.5 * (to - from), 0.5 * (to + from));
+    let w = half.cos();
+    let at = |angle: f64, r: f64, y: f64| Vec3::new(x + r * angle.cos(), y, z + r * angle.sin());
+    let points: Vec<Vec3> = (y.iter())
+        .flat_map(|y| {
+            [
+                at(from, radius, *y),
+                at(middle, radius / w, *y),
+                at(to, radius, *y),
+            ]
+        })
+        .collect();
+    let knots = [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+    let weights = [1.0, w, 1.0, 1.0, w, 1.0];
+    NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&weights))
+        .map_err(|e| CaseError::new(e.to_string()))
 }

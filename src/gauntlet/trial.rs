@@ -2,13 +2,13 @@
 use super::{Check, Verdict};
 use crate::output::{RunStatus, Summary, Table, read_csv};
 use crate::run::{self, RunError, RunOptions};
-use crate::scene;
+use crate::scene::{self, LoadedScene};
 use crate::solve::event::{Event, Observer};
 use covact_geometry::NurbsPatch;
 use covact_geometry::io::{CadFile, LengthUnit, write_json};
 use serde_json::Value;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tempfile::TempDir;
 
 /// Why a case could not go on, in words.
@@ -52,6 +52,20 @@ struct Recorder(Vec<Event>);
 impl Observer for Recorder {
     fn event(&mut self, event: &Event) {
         self.0.push(event.clone());
+    }
+}
+
+/// Stops a run after some steps.
+struct Stopper<'a> {
+    steps: u32,
+    stop: &'a AtomicBool,
+}
+
+impl Observer for Stopper<'_> {
+    fn event(&mut self, event: &Event) {
+        if matches!(event, Event::StepAccepted { step, .. } if *step >= self.steps) {
+            self.stop.store(true, Ordering::Relaxed);
+        }
     }
 }
 
@@ -114,7 +128,11 @@ impl Trial {
     /// # Errors
     /// It does not.
     pub fn done(&mut self, scene: &Value) -> Result<Outcome, CaseError> {
-        let outcome = self.solve(scene)?;
+        Self::ended(self.solve(scene)?)
+    }
+
+    /// That a run has reached its end.
+    fn ended(outcome: Outcome) -> Result<Outcome, CaseError> {
         if outcome.summary.status != RunStatus::Done {
             let reason = outcome.summary.reason.unwrap_or_default();
             let status = outcome.summary.status.name();
@@ -140,8 +158,36 @@ impl Trial {
         }
     }
 
-    /// Reads, checks and runs a scene as `covact run` does.
-    fn run(&mut self, scene: &Value) -> Result<Result<Outcome, RunError>, CaseError> {
+    /// Runs a scene that must reach its end, stopped after this many steps and continued from what was kept.
+    ///
+    /// # Errors
+    /// It does not reach its end, or is not stopped before.
+    pub fn continued(&mut self, scene: &Value, steps: u32) -> Result<Outcome, CaseError> {
+        let loaded = self.load(scene)?;
+        let folder = temporary()?;
+        let stop = AtomicBool::new(false);
+        let mut stopper = Stopper { steps, stop: &stop };
+        let first = run::run(
+            &loaded,
+            folder.path(),
+            &RunOptions::default(),
+            &mut stopper,
+            &stop,
+        );
+        let first = first.map_err(|e| CaseError(e.to_string()))?;
+        if first.status != RunStatus::Interrupted {
+            return Err(CaseError::new("the run was not stopped"));
+        }
+        let options = RunOptions {
+            resume: true,
+            ..RunOptions::default()
+        };
+        let outcome = self.enter(&loaded, folder, &options)?;
+        Self::ended(outcome.map_err(|e| CaseError(e.to_string()))?)
+    }
+
+    /// Reads and checks a scene.
+    fn load(&self, scene: &Value) -> Result<LoadedScene, CaseError> {
         let mut scene = scene.clone();
         if scene["solution"]["threads"].is_null() {
             scene["solution"]["threads"] = self.threads.into();
@@ -155,11 +201,25 @@ impl Trial {
             let error = loaded.error(problems);
             return Err(CaseError(format!("the scene: {error}")));
         }
-        let folder = temporary()?;
+        Ok(loaded)
+    }
+
+    /// Reads, checks and runs a scene as `covact run` does.
+    fn run(&mut self, scene: &Value) -> Result<Result<Outcome, RunError>, CaseError> {
+        let loaded = self.load(scene)?;
+        self.enter(&loaded, temporary()?, &RunOptions::default())
+    }
+
+    /// Runs a scene into a folder.
+    fn enter(
+        &mut self,
+        loaded: &LoadedScene,
+        folder: TempDir,
+        options: &RunOptions,
+    ) -> Result<Result<Outcome, RunError>, CaseError> {
         let mut recorder = Recorder::default();
         let never = AtomicBool::new(false);
-        let options = RunOptions::default();
-        let summary = match run::run(&loaded, folder.path(), &options, &mut recorder, &never) {
+        let summary = match run::run(loaded, folder.path(), options, &mut recorder, &never) {
             Ok(summary) => summary,
             Err(error) => return Ok(Err(error)),
         };

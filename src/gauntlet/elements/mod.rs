@@ -3,6 +3,8 @@ mod bent;
 mod distorted;
 mod squeezed;
 
+pub use squeezed::between_planes;
+
 use super::{Case, Group};
 
 pub const GROUP: Group = Group {

@@ -1,37 +1,13 @@
 //! Straight ways over what surfaces are made of.
 use crate::gauntlet::drawn::{FRICTION, STATE, block, cylinder, difference, steps};
+use crate::gauntlet::scenes::arc;
 use crate::gauntlet::{CaseError, Outcome, Trial};
-use covact_geometry::{NurbsPatch, Vec3, primitives};
+use covact_geometry::{Vec3, primitives};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
 fn broken(e: impl std::fmt::Display) -> CaseError {
     CaseError::new(e.to_string())
-}
-
-/// Part of a cylinder along y about (x, 0, z), from angle `from` to `to` (from x towards z, radians).
-fn arc(
-    [x, z]: [f64; 2],
-    radius: f64,
-    from: f64,
-    to: f64,
-    y: [f64; 2],
-) -> Result<NurbsPatch, CaseError> {
-    let (half, middle) = (0.5 * (to - from), 0.5 * (to + from));
-    let w = half.cos();
-    let at = |angle: f64, r: f64, y: f64| Vec3::new(x + r * angle.cos(), y, z + r * angle.sin());
-    let points: Vec<Vec3> = (y.iter())
-        .flat_map(|y| {
-            [
-                at(from, radius, *y),
-                at(middle, radius / w, *y),
-                at(to, radius, *y),
-            ]
-        })
-        .collect();
-    let knots = [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
-    let weights = [1.0, w, 1.0, 1.0, w, 1.0];
-    NurbsPatch::new([2, 1], knots, [3, 2], &points, Some(&weights)).map_err(broken)
 }
 
 pub fn borders(trial: &mut Trial) -> Result<(), CaseError> {
@@ -46,7 +22,7 @@ pub fn borders(trial: &mut Trial) -> Result<(), CaseError> {
     let mut four = Vec::new();
     for i in 0..4 {
         let from = (150.0 - 30.0 * f64::from(i)).to_radians();
-        let patch = arc([-0.3, -2.0], 2.0, from, from - PI / 6.0, [-2.0, 2.0])?;
+        let patch = arc([-0.3, -2.0], 2.0, [from, from - PI / 6.0], [-2.0, 2.0])?;
         four.push(match i {
             0 => patch,
             1 => patch.swapped().map_err(broken)?,
@@ -180,7 +156,7 @@ impl Corner {
         ];
         let file = match r > 0.0 {
             true => {
-                patches.push(arc([0.0, -r], r, 0.5 * PI, 0.0, [-10.0, 10.0])?);
+                patches.push(arc([0.0, -r], r, [0.5 * PI, 0.0], [-10.0, 10.0])?);
                 "fillet"
             }
             false => "sharp",
