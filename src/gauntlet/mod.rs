@@ -3,6 +3,7 @@
 //! A [`Case`] solves scenes and states what must hold of them: a closed form, an invariance, a balance, a converged
 //! reference, or, where there is no answer, what the message must name. `covact gauntlet` runs them and prints a table,
 //! `tests/hard_cases/gauntlet.rs` makes each a test.
+mod bodies;
 mod check;
 mod conditioning;
 mod drawn;
@@ -45,7 +46,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 7] = [
+pub const GROUPS: [Group; 8] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -53,6 +54,7 @@ pub const GROUPS: [Group; 7] = [
     friction::GROUP,
     invariance::GROUP,
     elements::GROUP,
+    bodies::GROUP,
 ];
 
 /// The case `group/name`.

@@ -80,6 +80,19 @@ cases!(
 
 cases!(elements: squeezed, squeezed_sheet, distorted, inverted, full_circle, layers);
 
+cases!(
+    bodies: every_rule,
+    pile,
+    small_on_big,
+    mirror_images,
+    folded_shut,
+    both_faces,
+    placed_elsewhere,
+    sides_exchanged,
+    shrink_fit,
+    line_contact,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -90,7 +103,9 @@ fn every_case_is_a_test() {
         ("friction", friction::NAMES),
         ("invariance", invariance::NAMES),
         ("elements", elements::NAMES),
+        ("bodies", bodies::NAMES),
     ];
+    assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
         let cases: Vec<&str> = group.cases.iter().map(|c| c.name).collect();
         assert_eq!((group.name, &cases[..]), (name, names));
