@@ -12,6 +12,7 @@ mod friction;
 mod geometry;
 mod instability;
 mod invariance;
+mod metal;
 mod motion;
 mod scenes;
 mod table;
@@ -46,7 +47,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 8] = [
+pub const GROUPS: [Group; 9] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -55,6 +56,7 @@ pub const GROUPS: [Group; 8] = [
     invariance::GROUP,
     elements::GROUP,
     bodies::GROUP,
+    metal::GROUP,
 ];
 
 /// The case `group/name`.

@@ -93,6 +93,19 @@ cases!(
     line_contact,
 );
 
+cases!(
+    metal: upset,
+    any_step,
+    let_go_and_reloaded,
+    one_curve,
+    other_units,
+    swings,
+    hill_of_mises,
+    rolled_across,
+    strips,
+    thick_tube,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -104,6 +117,7 @@ fn every_case_is_a_test() {
         ("invariance", invariance::NAMES),
         ("elements", elements::NAMES),
         ("bodies", bodies::NAMES),
+        ("metal", metal::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
