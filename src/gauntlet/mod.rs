@@ -8,6 +8,7 @@ mod check;
 mod conditioning;
 mod drawn;
 mod elements;
+mod forming;
 mod friction;
 mod geometry;
 mod instability;
@@ -47,7 +48,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 9] = [
+pub const GROUPS: [Group; 10] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -57,6 +58,7 @@ pub const GROUPS: [Group; 9] = [
     elements::GROUP,
     bodies::GROUP,
     metal::GROUP,
+    forming::GROUP,
 ];
 
 /// The case `group/name`.

@@ -106,6 +106,15 @@ cases!(
     thick_tube,
 );
 
+cases!(
+    forming: holder,
+    belt,
+    stretched_cup,
+    matched_dies,
+    springback,
+    released_twice,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -118,6 +127,7 @@ fn every_case_is_a_test() {
         ("elements", elements::NAMES),
         ("bodies", bodies::NAMES),
         ("metal", metal::NAMES),
+        ("forming", forming::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
