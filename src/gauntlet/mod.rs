@@ -7,6 +7,7 @@ mod bodies;
 mod check;
 mod conditioning;
 mod drawn;
+mod dynamics;
 mod elements;
 mod forming;
 mod friction;
@@ -48,7 +49,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 10] = [
+pub const GROUPS: [Group; 11] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -59,6 +60,7 @@ pub const GROUPS: [Group; 10] = [
     bodies::GROUP,
     metal::GROUP,
     forming::GROUP,
+    dynamics::GROUP,
 ];
 
 /// The case `group/name`.

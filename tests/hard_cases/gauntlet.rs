@@ -115,6 +115,19 @@ cases!(
     released_twice,
 );
 
+cases!(
+    dynamics: bar_on_wall,
+    cradle,
+    short_on_long,
+    moving_frame,
+    own_units,
+    askew_wall,
+    slides_to_rest,
+    comes_to_rest,
+    pendulum,
+    slowed,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -128,6 +141,7 @@ fn every_case_is_a_test() {
         ("bodies", bodies::NAMES),
         ("metal", metal::NAMES),
         ("forming", forming::NAMES),
+        ("dynamics", dynamics::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
