@@ -14,6 +14,7 @@ mod friction;
 mod geometry;
 mod instability;
 mod invariance;
+mod loads;
 mod metal;
 mod motion;
 mod scenes;
@@ -49,7 +50,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 11] = [
+pub const GROUPS: [Group; 12] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -61,6 +62,7 @@ pub const GROUPS: [Group; 11] = [
     metal::GROUP,
     forming::GROUP,
     dynamics::GROUP,
+    loads::GROUP,
 ];
 
 /// The case `group/name`.

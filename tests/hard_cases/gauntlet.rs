@@ -128,6 +128,16 @@ cases!(
     slowed,
 );
 
+cases!(
+    loads: hydrostatic,
+    balloon,
+    column,
+    lifted_strip,
+    catenary,
+    truss,
+    truss_snaps,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -142,6 +152,7 @@ fn every_case_is_a_test() {
         ("metal", metal::NAMES),
         ("forming", forming::NAMES),
         ("dynamics", dynamics::NAMES),
+        ("loads", loads::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
