@@ -18,6 +18,7 @@ mod loads;
 mod metal;
 mod motion;
 mod scenes;
+mod stages;
 mod table;
 mod trial;
 
@@ -50,7 +51,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 12] = [
+pub const GROUPS: [Group; 13] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -63,6 +64,7 @@ pub const GROUPS: [Group; 12] = [
     forming::GROUP,
     dynamics::GROUP,
     loads::GROUP,
+    stages::GROUP,
 ];
 
 /// The case `group/name`.

@@ -138,6 +138,16 @@ cases!(
     truss_snaps,
 );
 
+cases!(
+    stages: as_tables,
+    either_order,
+    continued,
+    solvers,
+    small_limit,
+    superposed,
+    rigid_limit,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -153,6 +163,7 @@ fn every_case_is_a_test() {
         ("forming", forming::NAMES),
         ("dynamics", dynamics::NAMES),
         ("loads", loads::NAMES),
+        ("stages", stages::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
