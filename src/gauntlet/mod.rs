@@ -17,6 +17,7 @@ mod invariance;
 mod loads;
 mod metal;
 mod motion;
+mod nurbs;
 mod scenes;
 mod stages;
 mod table;
@@ -51,7 +52,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 13] = [
+pub const GROUPS: [Group; 14] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -65,6 +66,7 @@ pub const GROUPS: [Group; 13] = [
     dynamics::GROUP,
     loads::GROUP,
     stages::GROUP,
+    nurbs::GROUP,
 ];
 
 /// The case `group/name`.

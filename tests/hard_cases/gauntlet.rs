@@ -148,6 +148,17 @@ cases!(
     rigid_limit,
 );
 
+cases!(
+    nurbs: rolled_up,
+    frame,
+    blown_tube,
+    as_other_elements,
+    mirror_images,
+    described_otherwise,
+    joined,
+    trimmed,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -164,6 +175,7 @@ fn every_case_is_a_test() {
         ("dynamics", dynamics::NAMES),
         ("loads", loads::NAMES),
         ("stages", stages::NAMES),
+        ("nurbs", nurbs::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
