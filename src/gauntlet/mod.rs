@@ -4,6 +4,7 @@
 //! reference, or, where there is no answer, what the message must name. `covact gauntlet` runs them and prints a table,
 //! `tests/hard_cases/gauntlet.rs` makes each a test.
 mod bodies;
+mod cad;
 mod check;
 mod conditioning;
 mod drawn;
@@ -52,7 +53,7 @@ pub struct Group {
 }
 
 /// All cases.
-pub const GROUPS: [Group; 14] = [
+pub const GROUPS: [Group; 15] = [
     geometry::GROUP,
     motion::GROUP,
     conditioning::GROUP,
@@ -67,6 +68,7 @@ pub const GROUPS: [Group; 14] = [
     loads::GROUP,
     stages::GROUP,
     nurbs::GROUP,
+    cad::GROUP,
 ];
 
 /// The case `group/name`.

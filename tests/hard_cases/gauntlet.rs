@@ -159,6 +159,15 @@ cases!(
     trimmed,
 );
 
+cases!(
+    cad: step_solid,
+    inches,
+    formats,
+    one_file_or_two,
+    facets,
+    triangles,
+);
+
 #[test]
 fn every_case_is_a_test() {
     let tests = [
@@ -176,6 +185,7 @@ fn every_case_is_a_test() {
         ("loads", loads::NAMES),
         ("stages", stages::NAMES),
         ("nurbs", nurbs::NAMES),
+        ("cad", cad::NAMES),
     ];
     assert_eq!(GROUPS.len(), tests.len());
     for (group, (name, names)) in GROUPS.iter().zip(tests) {
