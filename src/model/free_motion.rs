@@ -2,7 +2,7 @@
 use super::{Model, Support};
 use crate::mesh::nurbs::Kept;
 use crate::scene::ValueError;
-use crate::shell::{ANCHOR_NODES, Block, SEAM_NODES};
+use crate::shell::{Block, SEAM_NODES};
 use covact_geometry::Vec3;
 use nalgebra::{Matrix3, Matrix6, SymmetricEigen, Vector6};
 use std::collections::BTreeSet;
@@ -174,9 +174,10 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
         }
     }
     for spring in body.block.anchors() {
-        let [a, b] = [spring.nodes[0], spring.nodes[ANCHOR_NODES - 1]];
-        let [a, b] = [a, b].map(|n| root(&mut parent, n));
-        parent[b as usize] = a;
+        if let [first, .., last] = spring.nodes() {
+            let [a, b] = [first, last].map(|n| root(&mut parent, *n));
+            parent[b as usize] = a;
+        }
     }
     for seam in body.block.seams() {
         let [a, b] = [seam.nodes[0], seam.nodes[SEAM_NODES - 1]].map(|n| root(&mut parent, n));
@@ -188,7 +189,7 @@ fn pieces(nodes: usize, body: &super::BodyModel) -> Vec<Vec<u32>> {
         .block
         .anchors()
         .iter()
-        .map(|s| s.nodes[ANCHOR_NODES - 1])
+        .filter_map(|s| s.nodes().last().copied())
         .collect();
     // Neither are points of curves that nothing holds.
     let anchors = trimmed.into_iter().flat_map(|s| s.anchors.iter());

@@ -41,8 +41,8 @@ pub use h8::{Formulation, H8Block, H8System};
 pub use history::{Flow, PlasticWork};
 pub use material::{Law, MaterialLaw, Memory, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use nurbs::{
-    ANCHOR_DOFS, ANCHOR_NODES, AnchorSpring, HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS,
-    SEAM_NODES, SeamSpan, SheetResultants,
+    AnchorSpring, HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS, SEAM_NODES, SeamSpan,
+    SheetResultants,
 };
 pub use q18::{Q18Block, Q18System};
 pub use stress::{extrapolate, extrapolate_quadratic};

@@ -104,9 +104,7 @@ pub(crate) mod sizes {
 
     /// Where the tangents of seams go, and room for one.
     pub fn seams(model: &Model) -> usize {
-        let all = model.bodies.iter().map(|b| b.block.seams().len());
-        let springs = model.bodies.iter().map(|b| b.block.anchors().len());
-        Seams::size(all.sum(), springs.sum())
+        Seams::size(model)
     }
 
     /// Where the tangents of follower loads go.

@@ -131,7 +131,9 @@ pub(super) fn pattern(
             add(&seam.nodes.map(|n| n + body.first_node));
         }
         for spring in body.block.anchors() {
-            add(&spring.nodes.map(|n| n + body.first_node));
+            plain.clear();
+            plain.extend(spring.nodes().iter().map(|n| n + body.first_node));
+            add(&plain);
         }
     }
     for (index, pair) in model.pairs.iter().enumerate() {
@@ -186,7 +188,9 @@ impl Maps {
         }
         for body in &model.bodies {
             for spring in body.block.anchors() {
-                pattern.element_map(&spring.nodes.map(|n| n + body.first_node), &mut seams)?;
+                nodes.clear();
+                nodes.extend(spring.nodes().iter().map(|n| n + body.first_node));
+                pattern.element_map(&nodes, &mut seams)?;
             }
         }
         seams.shrink_to_fit();

@@ -195,7 +195,7 @@ impl<'m, L: PairLaw> Assembler<'m, L> {
                 true => Systems::new(model),
                 false => Systems::default(),
             },
-            seams: Seams::new(maps.seams),
+            seams: Seams::new(model, maps.seams),
             touches: vec![Ok(None); rigid::most(model)],
             clearances: vec![Clearance::default(); rigid::cleared(model)],
             held: Vec::new(),

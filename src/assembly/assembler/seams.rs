@@ -2,8 +2,9 @@
 use super::elements::pairs;
 use super::{Assembler, Totals, put};
 use crate::contact::law::PairLaw;
+use crate::model::Model;
 use crate::model::state::heap;
-use crate::shell::{ANCHOR_DOFS, ANCHOR_NODES, SEAM_DOFS, SEAM_NODES};
+use crate::shell::{SEAM_DOFS, SEAM_NODES};
 use covact_geometry::Vec3;
 
 /// Places of the seams of all bodies in the matrix, then of all springs, and room for one.
@@ -11,35 +12,49 @@ use covact_geometry::Vec3;
 pub(super) struct Seams {
     maps: Vec<u32>,
     tangent: Vec<f64>,
+    /// Of a spring: nodes of the model, their displacements, forces.
+    nodes: Vec<u32>,
+    u: Vec<Vec3>,
+    f: Vec<f64>,
+}
+
+/// Most nodes of a seam or a spring, and of a spring alone.
+fn most(model: &Model) -> [usize; 2] {
+    let bodies = || model.bodies.iter();
+    let springs = bodies().flat_map(|b| b.block.anchors());
+    let spring = springs.map(|s| s.nodes().len()).max().unwrap_or(0);
+    let seams = bodies().any(|b| !b.block.seams().is_empty());
+    [spring.max(if seams { SEAM_NODES } else { 0 }), spring]
 }
 
 impl Seams {
-    pub fn new(maps: Vec<u32>) -> Seams {
-        let size = if maps.is_empty() {
-            0
-        } else {
-            SEAM_DOFS * SEAM_DOFS
-        };
+    pub fn new(model: &Model, maps: Vec<u32>) -> Seams {
+        let [all, springs] = most(model);
         Seams {
             maps,
-            tangent: vec![0.0; size],
+            tangent: vec![0.0; 9 * all * all],
+            nodes: Vec::with_capacity(springs),
+            u: Vec::with_capacity(springs),
+            f: vec![0.0; 3 * springs],
         }
     }
 
-    /// Bytes of heap for so many seams and springs.
-    pub fn size(count: usize, springs: usize) -> usize {
-        let room = if count + springs > 0 {
-            SEAM_DOFS * SEAM_DOFS
-        } else {
-            0
-        };
-        let places = count * pairs(SEAM_NODES) + springs * pairs(ANCHOR_NODES);
-        places * size_of::<u32>() + room * size_of::<f64>()
+    /// Bytes of heap for those of a model.
+    pub fn size(model: &Model) -> usize {
+        let [all, springs] = most(model);
+        let places = model.bodies.iter().map(|b| {
+            let own = b.block.anchors().iter().map(|s| pairs(s.nodes().len()));
+            b.block.seams().len() * pairs(SEAM_NODES) + own.sum::<usize>()
+        });
+        let of_spring = size_of::<u32>() + size_of::<Vec3>() + 3 * size_of::<f64>();
+        places.sum::<usize>() * size_of::<u32>()
+            + 9 * all * all * size_of::<f64>()
+            + springs * of_spring
     }
 
     /// Bytes of heap that it holds.
     pub fn bytes(&self) -> usize {
-        heap(&self.maps) + heap(&self.tangent)
+        heap(&self.maps) + heap(&self.tangent) + heap(&self.nodes) + heap(&self.u) + heap(&self.f)
     }
 
     /// Places on another pattern.
@@ -69,17 +84,26 @@ impl<L: PairLaw> Assembler<'_, L> {
                 self.couple::<TANGENT>((&nodes, &f), (room, &mut at), increments, residual, rhs);
             }
         }
-        let mut f = [0.0; ANCHOR_DOFS];
+        let mut nodes = std::mem::take(&mut self.seams.nodes);
+        let mut own = std::mem::take(&mut self.seams.u);
+        let mut f = std::mem::take(&mut self.seams.f);
         for body in &self.model.bodies {
             for spring in body.block.anchors() {
-                let nodes = spring.nodes.map(|n| n + body.first_node);
-                let room = ANCHOR_DOFS * ANCHOR_DOFS;
+                nodes.clear();
+                nodes.extend(spring.nodes().iter().map(|n| n + body.first_node));
+                own.clear();
+                own.extend(
+                    (nodes.iter()).map(|n| Vec3::from_column_slice(&u[3 * *n as usize..][..3])),
+                );
+                let dofs = 3 * nodes.len();
+                let room = dofs * dofs;
                 let tangent = TANGENT.then(|| &mut self.seams.tangent[..room]);
-                totals.internal_energy +=
-                    spring.evaluate(&displacements(u, &nodes), &mut f, tangent);
-                self.couple::<TANGENT>((&nodes, &f), (room, &mut at), increments, residual, rhs);
+                totals.internal_energy += spring.evaluate(&own, &mut f[..dofs], tangent);
+                let parts = (&nodes[..], &f[..dofs]);
+                self.couple::<TANGENT>(parts, (room, &mut at), increments, residual, rhs);
             }
         }
+        (self.seams.nodes, self.seams.u, self.seams.f) = (nodes, own, f);
     }
 
     /// Adds the forces `f` at `nodes` and the tangent of so much room; `at` is its place among all places in the matrix, and goes on

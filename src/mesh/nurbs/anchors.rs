@@ -16,6 +16,15 @@ pub struct Anchor {
     pub at: BorderPoint,
 }
 
+impl Anchor {
+    /// Whether another one is the next of the same line: their lengths touch, of one curve or two.
+    pub fn precedes(&self, next: &Anchor) -> bool {
+        let apart = (next.at.at.position - self.at.at.position).norm();
+        let same = Border::Trim(self.trim).patch() == Border::Trim(next.trim).patch();
+        same && apart < 2.0 * (self.at.length + next.at.length)
+    }
+}
+
 impl NurbsSheet {
     /// Nodes of the anchors on a curve, if it has any.
     pub fn anchored(&self, trim: TrimEdge) -> Option<Vec<u32>> {

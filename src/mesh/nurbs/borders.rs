@@ -322,6 +322,8 @@ pub struct BorderPoint {
     pub outward: [f64; 2],
     /// Undeformed width of the element across the border.
     pub width: f64,
+    /// The same along it.
+    pub along: f64,
 }
 
 /// Undeformed width of an element with these sides (in parameters) across a border: of an edge along the other parameter, of a curve of a
@@ -388,12 +390,14 @@ impl NurbsSheet {
                     let [a, b] = part.patch.basis(dir).span_range(span[dir]);
                     b - a
                 });
+                let size = (tangents[0] * x + tangents[1] * y).norm();
                 BorderPoint {
                     at: p,
                     element: part.first_element as usize + span[0] + nu * span[1],
-                    length: p.weight * (tangents[0] * x + tangents[1] * y).norm(),
+                    length: p.weight * size,
                     outward,
                     width: width_across(border, tangents, outward, sides),
+                    along: size / (x / sides[0]).hypot(y / sides[1]),
                 }
             });
             points.collect()

@@ -29,7 +29,7 @@ use super::material::Law;
 use crate::fem::gauss;
 use crate::mesh::NurbsSheet;
 use crate::mesh::nurbs::{GROUP, Kept};
-pub use anchors::{ANCHOR_DOFS, ANCHOR_NODES, AnchorSpring};
+pub use anchors::AnchorSpring;
 pub use borders::HeldNormal;
 use covact_geometry::{PatchShape, Vec3};
 pub use frame::{DOFS, NODES};
@@ -280,7 +280,8 @@ impl NurbsBlock {
         let seams = groups
             + size_of_val(&self.seams[..])
             + self.seams.iter().map(SeamSpan::bytes).sum::<usize>();
-        let anchors = size_of_val(&self.anchors[..]) + size_of_val(&self.tethers[..]);
+        let springs: usize = self.anchors.iter().map(AnchorSpring::bytes).sum();
+        let anchors = size_of_val(&self.anchors[..]) + springs + size_of_val(&self.tethers[..]);
         size_of_val(&self.borders[..]) + size_of_val(&self.starts[..]) + seams + anchors
     }
 
