@@ -430,10 +430,7 @@ impl Attempts<'_, '_> {
             settings: self.settings,
             patience,
             first: first.unwrap_or_default(),
-            // Sheets have none.
-            mixed: self.mixed
-                && self.settings.mixed
-                && (self.model.bodies.iter()).any(|b| b.block.sheet().is_none()),
+            mixed: self.mixed && self.settings.mixed,
             mixed_iterations: 0,
             opened: false,
             ping_pongs: 0,

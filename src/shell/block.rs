@@ -326,19 +326,18 @@ impl ElementBlock<{ nurbs::NODES }> for NurbsBlock {
         _: &mut [f64],
         out: &mut NurbsSystem,
     ) -> Result<(), ElementFault> {
-        self.evaluate(e, u, out)
+        self.evaluate(e, u, None, out)
     }
-    /// As [`Self::evaluate`]: mixed integration points are those of the solid-shells.
     #[inline]
     fn evaluate_mixed(
         &self,
         e: usize,
         u: &[Vec3; nurbs::NODES],
-        _: Option<&[Vec3; nurbs::NODES]>,
+        correction: Option<&[Vec3; nurbs::NODES]>,
         _: &mut [f64],
         out: &mut NurbsSystem,
     ) -> Result<(), ElementFault> {
-        self.evaluate(e, u, out)
+        self.evaluate(e, u, correction, out)
     }
     #[inline]
     fn residual(

@@ -36,6 +36,31 @@ fn the_hemisphere_takes_its_load_in_one_step() {
     );
 }
 
+/// The same load in five equal steps, which plain Newton steps can do as well: at most .4 of their iterations (an independent
+/// implementation has 24 in four and 69 in five), and the same equilibrium.
+#[test]
+fn equal_steps_take_two_fifths_of_the_iterations() {
+    let [mixed, plain] = [true, false].map(|mixed| {
+        let mut shell = Hemisphere::of(ElementKind::H8, 8);
+        let mut found = (0.0, 0.0, 0);
+        for force in [80.0, 160.0, 240.0, 320.0, 400.0] {
+            let (a, b, iterations) = match mixed {
+                true => shell.solve_with(force, Model::newton_mixed),
+                false => shell.solve_with(force, Model::newton),
+            };
+            found = (a, b, found.2 + iterations);
+        }
+        found
+    });
+    println!("mixed {mixed:?}, plain {plain:?}");
+    close("u_A", mixed.0, plain.0, 1e-7);
+    close("-u_B", mixed.1, plain.1, 1e-7);
+    assert!(
+        plain.2 > 40 && 5 * mixed.2 <= 2 * plain.2,
+        "{mixed:?} {plain:?}"
+    );
+}
+
 /// A block of E = 100, nu = 0.3 whose every point moves by `c x` along y, after which its tangent is asked for along `x` along z. Both
 /// stretch the block along x in second order only, by `c^2 / 2` and `1 / 2`: the part of the geometric tangent that mixed
 /// integration points leave out is `2 (c^2 / 2) C_1111 (1 / 2)` times the volume.

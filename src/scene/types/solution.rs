@@ -66,7 +66,7 @@ pub struct Newton {
     pub tolerance: f64,
     /// Shorten steps of Newton's method that do not lower the residual, and all that go too far where a material flows.
     pub line_search: bool,
-    /// Mixed integration points: stresses in the tangent of solid-shells are continued along the last correction, which lets a
+    /// Mixed integration points: stresses in the tangent of shells are continued along the last correction, which lets a
     /// step rotate a thin shell much farther. The equilibrium is the same. Tried first, and left out where it does not help.
     pub mixed: bool,
 }

@@ -349,7 +349,7 @@ impl NurbsBlock {
         Ok((energy, forces))
     }
 
-    /// Forces, tangent and energy at displacements `u`.
+    /// Forces, tangent and energy at displacements `u`; with mixed integration points where there is a `correction` that led there.
     ///
     /// # Errors
     /// As [`Self::forces`].
@@ -357,15 +357,20 @@ impl NurbsBlock {
         &self,
         e: usize,
         u: &[Vec3; NODES],
+        correction: Option<&[Vec3; NODES]>,
         out: &mut NurbsSystem,
     ) -> Result<(), ElementFault> {
         let u: [V<f64>; NODES] = u.map(Into::into);
+        let correction: Option<[V<f64>; NODES]> = correction.map(|du| du.map(Into::into));
         out.f.fill(0.0);
         out.k.fill(0.0);
         out.energy = 0.0;
         for group in self.groups_of(e) {
             let strains = Strains::new(self, group, &u);
-            with_sheet!(&self.plane, law => tangent::linearize(&strains, self, group, law, out))
+            let bent = correction
+                .as_ref()
+                .map(|du| strain::quadratic(self, group, du));
+            with_sheet!(&self.plane, law => tangent::linearize(&strains, self, group, law, bent.as_ref(), out))
                 .map_err(|cause| fault(e, cause))?;
         }
         Ok(())

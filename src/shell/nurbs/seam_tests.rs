@@ -170,7 +170,7 @@ fn stiffness(block: &NurbsBlock, nodes: usize) -> DMatrix<f64> {
     };
     for e in 0..block.elements() {
         block
-            .evaluate(e, &[Vec3::zeros(); NODES], &mut system)
+            .evaluate(e, &[Vec3::zeros(); NODES], None, &mut system)
             .unwrap();
         add(&block.nodes_of(e), &system.k[..]);
     }

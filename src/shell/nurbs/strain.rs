@@ -58,6 +58,53 @@ fn transposed<D: DualNum<f64> + Copy>(m: &Turn, e: &Components<D>) -> Components
     [0, 1, 2].map(|j| e[0] * m[0][j] + e[1] * m[1][j] + e[2] * m[2][j])
 }
 
+/// Puts assumed membrane strains in the place of the compatible ones at the Gauss points, with those of the tying points, turned.
+#[inline(always)]
+fn blend<D: DualNum<f64> + Copy>(
+    block: &NurbsBlock,
+    group: usize,
+    tied: &[Components<D>; ASSUMED],
+    strains: &mut [Components<D>; PLAIN],
+) {
+    let mix = Mix::new(block, group);
+    let points = block.gauss(group);
+    let mut mean = [D::zero(); 3];
+    for (g, p) in points.iter().enumerate() {
+        let turned = apply(&p.turn, &strains[g]);
+        (0..3).for_each(|i| mean[i] += turned[i] * mix.part[g]);
+    }
+    for (g, p) in points.iter().enumerate() {
+        let mut sum = mean;
+        for c in 0..ASSUMED {
+            (0..3).for_each(|i| sum[i] += tied[c][i] * mix.functions[g][c]);
+        }
+        strains[g] = apply(&p.back, &sum);
+    }
+}
+
+/// The part of membrane strains that is quadratic in a change of the displacements, `du_i . du_j / 2`, assumed where strains are.
+pub(super) fn quadratic(
+    block: &NurbsBlock,
+    group: usize,
+    du: &[V<f64>; NODES],
+) -> [Components<f64>; PLAIN] {
+    let rest = [0.0; 3];
+    let of = |n: [&[f64; NODES]; 2]| membrane([&rest, &rest], &n.map(|n| combine(n, du)));
+    let mut out = [[0.0; 3]; PLAIN];
+    for (out, p) in out.iter_mut().zip(block.gauss(group)) {
+        *out = of([&p.n[0], &p.n[1]]);
+    }
+    let ties = block.tying(group);
+    if !ties.is_empty() {
+        let mut tied = [[0.0; 3]; ASSUMED];
+        for (tied, tie) in tied.iter_mut().zip(ties) {
+            *tied = apply(&tie.turn, &of([&tie.n[0], &tie.n[1]]));
+        }
+        blend(block, group, &tied, &mut out);
+    }
+    out
+}
+
 impl<D: DualNum<f64> + Copy> Strains<D> {
     #[inline(always)]
     pub fn new(block: &NurbsBlock, group: usize, u: &[V<D>; NODES]) -> Self {
@@ -96,27 +143,16 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
         if ties.is_empty() {
             return;
         }
-        let mix = Mix::new(block, group);
-        let points = block.gauss(group);
         let mut tied = [[D::zero(); 3]; ASSUMED];
         for (c, tie) in ties.iter().enumerate() {
             let own = tie.n.each_ref().map(|n| combine(n, &self.u));
             self.tangents[c] = [0, 1].map(|i| moved(&tie.rest[i], &own[i]));
             tied[c] = apply(&tie.turn, &membrane([&tie.rest[0], &tie.rest[1]], &own));
         }
-        let mut mean = [D::zero(); 3];
-        for (g, p) in points.iter().enumerate() {
-            let [e1, e2, e3, ..] = self.strains[g];
-            let turned = apply(&p.turn, &[e1, e2, e3]);
-            (0..3).for_each(|i| mean[i] += turned[i] * mix.part[g]);
-        }
-        for (g, p) in points.iter().enumerate() {
-            let mut sum = mean;
-            for c in 0..ASSUMED {
-                (0..3).for_each(|i| sum[i] += tied[c][i] * mix.functions[g][c]);
-            }
-            let eps = apply(&p.back, &sum);
-            self.strains[g][..3].copy_from_slice(&eps);
+        let mut plain = self.strains.map(|e| [e[0], e[1], e[2]]);
+        blend(block, group, &tied, &mut plain);
+        for (strains, eps) in self.strains.iter_mut().zip(plain) {
+            strains[..3].copy_from_slice(&eps);
         }
     }
 

@@ -43,21 +43,32 @@ fn turn(m: &[[f64; 3]; 3], rows: &[[f64; DOFS]; 3], out: &mut [[f64; DOFS]; 3]) 
 }
 
 /// Adds what a group of points gives.
+///
+/// With `bent`, the part of the strains that is quadratic in the last correction, points are mixed: the membrane forces of the geometric
+/// part are continued along the correction with the tangent of the law instead of taken where it led to (D. Magisano, L. Leonetti and
+/// G. Garcea, CMAME 313 (2017)), which is what they are there less `D : bent`. Forces and energy are the same.
 pub(super) fn linearize<L: PlaneStress>(
     at: &Strains<f64>,
     block: &NurbsBlock,
     group: usize,
     law: &L,
+    bent: Option<&[Components<f64>; PLAIN]>,
     out: &mut NurbsSystem,
 ) -> Result<(), FaultCause> {
     let NurbsSystem { f, k, energy, work } = out;
     let points = block.gauss(group);
     rows(at, block, group, work);
-    let mut resultants = [[0.0; 6]; PLAIN];
+    let (mut resultants, mut continued) = ([[0.0; 6]; PLAIN], [[0.0; 6]; PLAIN]);
     let mut pushed = [[0.0; DOFS]; 6];
     for (g, p) in points.iter().enumerate() {
         let answer = law.answer(g, &p.place, &at.strains[g])?;
         resultants[g] = answer.resultants;
+        continued[g] = answer.resultants;
+        if let Some(bent) = bent {
+            for (n, moduli) in continued[g][..3].iter_mut().zip(&answer.tangent) {
+                *n -= moduli[0] * bent[g][0] + moduli[1] * bent[g][1] + moduli[2] * bent[g][2];
+            }
+        }
         *energy += p.weight * answer.energy;
         let b = &work.rows[g];
         for (v, pushed) in pushed.iter_mut().enumerate() {
@@ -81,7 +92,7 @@ pub(super) fn linearize<L: PlaneStress>(
             }
         }
     }
-    let (own, tied) = Strains::spread(block, group, &resultants);
+    let (own, tied) = Strains::spread(block, group, &continued);
     let mut scalars = [0.0; NODES * NODES];
     for (p, n) in points.iter().zip(&own) {
         stretch([&p.n[0], &p.n[1]], n, &mut scalars);

@@ -108,7 +108,7 @@ fn derivatives_against_dual_numbers() {
             let vectors = u.map(Vec3::from);
             let mut system = NurbsSystem::default();
             for e in 0..block.elements() {
-                block.evaluate(e, &vectors, &mut system).unwrap();
+                block.evaluate(e, &vectors, None, &mut system).unwrap();
                 let norm = system.k.iter().map(|k| k * k).sum::<f64>().sqrt();
                 let size = system.f.iter().map(|f| f * f).sum::<f64>().sqrt();
                 assert!(norm > 10.0 && size > 0.5, "{norm} {size}");
@@ -174,7 +174,9 @@ fn loose_points_follow_their_neighbours() {
         block.residual(e, &u, &mut f).unwrap();
         assert!(f.iter().all(|f| f.abs() < 1e-11), "{f:?}");
         let u = moved(0.06);
-        block.evaluate(e, &u.map(Vec3::from), &mut system).unwrap();
+        block
+            .evaluate(e, &u.map(Vec3::from), None, &mut system)
+            .unwrap();
         let mut f = [[0.0; 3]; NODES];
         let energy = tether.forces(&u, &mut f);
         let largest = f
@@ -204,7 +206,7 @@ fn stiffness(block: &NurbsBlock, mesh: &Mesh) -> DMatrix<f64> {
     let mut system = NurbsSystem::default();
     for e in 0..block.elements() {
         let still = [Vec3::zeros(); NODES];
-        block.evaluate(e, &still, &mut system).unwrap();
+        block.evaluate(e, &still, None, &mut system).unwrap();
         let nodes = block.nodes_of(e);
         for column in 0..DOFS {
             for row in 0..DOFS {
@@ -289,6 +291,44 @@ fn patch_test_on_a_distorted_net() {
                 "{n}: {}",
                 f.norm() / largest
             );
+        }
+    }
+}
+
+/// A flat sheet whose every point moves by `c x` along z, after which its tangent is asked for along `x` along y. Both stretch it along x in
+/// second order only, by `c^2 / 2` and `1 / 2`: what mixed integration points leave out is `t C_1111 (c^2 / 2)` times the area, of second
+/// order in the correction. Forces and energy are the same.
+#[test]
+fn what_a_correction_stretches_is_left_out_of_the_geometric_part() {
+    let c = 0.4;
+    for sheet in [sheet(0.0, true), sheet(0.0, false)] {
+        let block = NurbsBlock::new(&sheet, laws()[0]).unwrap();
+        for e in 0..block.elements() {
+            let du = block.reference[e].map(|x| Vec3::z() * (c * x[0]));
+            let evaluated = |part: Option<f64>| {
+                let last = part.map(|part| du.map(|d| d * part));
+                let mut out = NurbsSystem::default();
+                block.evaluate(e, &du, last.as_ref(), &mut out).unwrap();
+                let v: Vec<f64> = block.reference[e]
+                    .iter()
+                    .flat_map(|x| [0.0, x[0], 0.0])
+                    .collect();
+                let mut sum = 0.0;
+                for (column, v2) in out.k.chunks_exact(DOFS).zip(&v) {
+                    sum += v2 * column.iter().zip(&v).map(|(k, v1)| k * v1).sum::<f64>();
+                }
+                (sum, out.f, out.energy)
+            };
+            let (plain, f, energy) = evaluated(None);
+            let expected = 1000.0 / (1.0 - 0.09) * 0.5 * c * c * block.volume(e);
+            for (last, part) in [(1.0, 1.0), (0.5, 0.25), (-1.0, 1.0)] {
+                let (mixed, same, stored) = evaluated(Some(last));
+                assert!((f, energy) == (same, stored));
+                assert!(
+                    (plain - mixed - part * expected).abs() < 1e-12 * plain,
+                    "{plain} {mixed}"
+                );
+            }
         }
     }
 }
