@@ -5,6 +5,7 @@
 //! the crate itself (derivatives, rigid motions, patch test).
 mod contact;
 mod linear;
+mod nets;
 mod nonlinear;
 mod pair;
 mod panel;

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 const SMALL: f64 = 1e-4;
 
 /// A patch as cubic with so many even spans, whose knots the shell keeps.
-fn fine(patch: &Patch, spans: [usize; 2]) -> NurbsPatch {
+pub fn fine(patch: &Patch, spans: [usize; 2]) -> NurbsPatch {
     let points: Vec<Vec3> = (patch.points.iter())
         .map(|[x, y, z, w]| Vec3::new(x / w, y / w, z / w))
         .collect();
