@@ -1,6 +1,7 @@
 //! Shipped scenes of NURBS shells that slide, at coarser meshes.
 use super::off;
 use crate::support::{Outcome, scene_json, set, solve};
+use covact::solve::event::Event;
 use serde_json::json;
 
 /// A scene that must end at the defaults with no more than 12 iterations a step on average, failed ones included, and without
@@ -50,6 +51,48 @@ fn crossed_tubes_balance() {
     // Coulomb's law on a tube that bends in where it is pressed.
     let ratio = (y / z).abs();
     assert!(last("points.slip") > 0.0 && ratio > 0.2, "{ratio}");
+}
+
+/// `tubes_crossed_nurbs` with tighter tolerances: once no point switches any more, each residual is about the square of the one before,
+/// with both tubes bending and friction between them.
+#[test]
+fn crossed_tubes_converge_quadratically() {
+    let mut scene = scene_json("tubes_crossed_nurbs.json");
+    for body in ["lower", "upper"] {
+        set(&mut scene, &format!("/bodies/{body}/nurbs/size"), 10);
+    }
+    scene["solution"]["end_time"] = json!(1.3);
+    scene["solution"]["newton"] = json!({"tolerance": 1e-11});
+    scene["output"] = json!({"every": 0});
+    let outcome = run_to_end(&scene);
+    // Pairs of residuals without a change in between, from where Newton's method is near its end to where rounding is left, which is
+    // 1e-11 of the forces.
+    let mut pairs = Vec::new();
+    let mut last = None;
+    for event in &outcome.events {
+        let Event::Iteration {
+            iteration,
+            residual,
+            changed,
+            line_search,
+            ..
+        } = event
+        else {
+            continue;
+        };
+        let follows = *iteration > 1 && *changed == 0 && *line_search == 1.0;
+        if let Some(before) = last.filter(|before| follows && *before < 1e-2 && *before > 1e-5) {
+            pairs.push([before, *residual]);
+        }
+        last = (*changed == 0).then_some(*residual);
+    }
+    let factors: Vec<f64> = pairs
+        .iter()
+        .map(|[a, b]| (b - 3e-11).max(0.0) / (a * a))
+        .collect();
+    println!("{factors:.1?}");
+    assert!(pairs.len() > 20, "{pairs:?}");
+    assert!(factors.iter().all(|f| *f < 20.0), "{pairs:?}");
 }
 
 /// `sheet_over_hills`: the same hills as one patch take the same forces while the sheet is drawn over the borders of the eight.
