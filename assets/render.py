@@ -53,6 +53,8 @@ def arguments():
     p.add_argument("--zoom", type=float, default=1.0)
     p.add_argument("--fit", choices=["bodies", "all"], default="bodies", help="what the picture is centred on")
     p.add_argument("--opacity", type=float, default=0.35, help="of rigid surfaces; 0 leaves them out")
+    p.add_argument("--behind", type=float, default=3e-3,
+                   help="part of the model's size by which bodies lie behind rigid surfaces that they touch")
     p.add_argument("--no-edges", action="store_true", help="leave out the element edges")
     p.add_argument("--palette", type=int, metavar="COLOURS", help="at most this many colours (up to 256): smaller files")
     p.add_argument("--size", type=int, nargs=2, default=[1400, 900], metavar=("WIDTH", "HEIGHT"))
@@ -246,7 +248,9 @@ def main():
             sys.exit(f"no part {name}; there are: {', '.join(names)}")
     parts = [(name, grid) for name, grid in parts if not args.parts or name in args.parts]
     bodies = [grid for _, grid in parts if "element" in grid.cell_data]
-    surfaces = [moved(grid) for _, grid in parts if "element" not in grid.cell_data]
+    # Mid-surfaces lie within their bodies.
+    inside = {"element", "sheet_element"}
+    surfaces = [moved(grid) for _, grid in parts if not inside & set(grid.cell_data.keys())]
 
     style = {}
     if args.field:
@@ -280,6 +284,7 @@ def main():
     plotter.render_window.SetMultiSamples(0)
     plotter.render_window.SetAlphaBitPlanes(1)
     body_bounds = [b for grid in bodies for b in add_body(plotter, grid, args, style)]
+    body_actors = [a for a in plotter.actors.values() if isinstance(a, pv.Actor)]
     surface_bounds = [b for grid in surfaces for b in add_surface(plotter, grid, args)] if args.opacity > 0 else []
     if args.field == "contact_status":
         plotter.add_legend([list(entry) for entry in reversed(STATUS.items())], bcolor=None, face="rectangle",
@@ -288,6 +293,11 @@ def main():
     if not wanted:
         sys.exit("nothing to draw")
     place_camera(plotter, args, wanted)
+    # Bodies lie a little behind rigid surfaces that they touch: where both coincide, they would take turns from pixel to pixel.
+    low, high = np.min(wanted, axis=0)[::2], np.max(wanted, axis=0)[1::2]
+    behind = np.array(plotter.camera.direction) * args.behind * np.linalg.norm(high - low)
+    for actor in body_actors:
+        actor.position = behind
     args.output.parent.mkdir(parents=True, exist_ok=True)
     image = plotter.screenshot(return_img=True)[:, :, :3].astype(float)
     height, width = image.shape[0] // 2, image.shape[1] // 2
