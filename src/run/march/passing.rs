@@ -30,6 +30,8 @@ const STEPS: u32 = 60;
 const SMALL: f64 = 0.02;
 /// Part of the work so far above which the energy that was taken is told.
 const TOLD: f64 = 1e-3;
+/// Part of the forces above which viscous forces in an accepted state are told: its forces do not balance.
+const BALANCED: f64 = 0.01;
 
 /// A jump that is being passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +46,8 @@ pub(in crate::run) struct Jump {
     /// Steps until it may be let go again, and those that there were to be since the last time it was not.
     pub left: u32,
     pub pause: u32,
+    /// Largest part of the forces that the viscous ones were in an accepted state.
+    pub largest: f64,
 }
 
 impl Jump {
@@ -55,6 +59,7 @@ impl Jump {
             taken,
             left,
             pause,
+            largest,
         } = *self;
         out.f64(rate);
         out.u32(step);
@@ -62,6 +67,7 @@ impl Jump {
         out.f64(taken);
         out.u32(left);
         out.u32(pause);
+        out.f64(largest);
     }
 
     pub fn take(from: &mut Reader) -> Result<Self, Malformed> {
@@ -72,6 +78,7 @@ impl Jump {
             taken: from.f64()?,
             left: from.u32()?,
             pause: from.u32()?,
+            largest: from.f64()?,
         })
     }
 }
@@ -129,6 +136,7 @@ impl March<'_, '_> {
                 taken: committed.stabilized,
                 left: 0,
                 pause: 0,
+                largest: 0.0,
             },
             Some(jump) => Jump { rate, ..jump },
         });
@@ -160,6 +168,7 @@ impl March<'_, '_> {
         let weaker = Jump {
             rate: WEAKER * jump.rate,
             left: jump.left.saturating_sub(1),
+            largest: jump.largest.max(share),
             ..jump
         };
         walk.jump = Some(weaker);
@@ -197,11 +206,26 @@ impl March<'_, '_> {
         Ok(())
     }
 
-    /// Tells of a jump that is over; of several in one warning, with all of their times.
+    /// Tells of a jump that is over.
     pub(super) fn tell_jump(&mut self, jump: &Jump, committed: &State) {
         let work = self.watch.turned_over();
         let taken = committed.stabilized - jump.taken;
-        if taken <= TOLD * work {
+        if taken > TOLD * work {
+            let rest = format!(
+                ": the path jumps there, and viscous forces carried it past, which took an energy of {} ({:.1} % of the work) in \
+                 all; what follows is one of the states that it may have jumped to",
+                number(committed.stabilized),
+                100.0 * committed.stabilized / work
+            );
+            self.tell_time("no equilibrium goes on from time ", jump.time, &rest);
+        } else if jump.largest > BALANCED {
+            let rest = format!(
+                ": viscous forces carried the path past states from which none goes on, and until they were let go they were more \
+                 than {:.0} % of the forces, which do not balance by as much",
+                100.0 * BALANCED
+            );
+            self.tell_time("no equilibrium from time ", jump.time, &rest);
+        } else {
             self.observer.event(&Event::Note {
                 text: format!(
                     "near time {} viscous forces carried the path past a state from which none goes on; they took an energy of {}",
@@ -209,27 +233,22 @@ impl March<'_, '_> {
                     number(taken)
                 ),
             });
-            return;
         }
-        let head = "no equilibrium goes on from time ";
+    }
+
+    /// Warns of what happened at a time; of several times in one warning.
+    fn tell_time(&mut self, head: &str, time: f64, rest: &str) {
         let mut told = self.progress.warnings.iter();
         let earlier = told.position(|w| w.starts_with(head));
         let times = earlier.and_then(|i| {
-            let (times, _) = self.progress.warnings[i][head.len()..].split_once(": the path")?;
+            let (times, _) = self.progress.warnings[i][head.len()..].split_once(": ")?;
             Some(format!("{times}, "))
         });
-        let text = format!(
-            "{head}{}{}: the path jumps there, and viscous forces carried it past, which took an energy of {} ({:.1} % of the \
-             work) in all; what follows is one of the states that it may have jumped to",
-            times.unwrap_or_default(),
-            number(jump.time),
-            number(committed.stabilized),
-            100.0 * committed.stabilized / work
-        );
         if let Some(i) = earlier {
             self.progress.warnings.remove(i);
         }
-        self.warn(text);
+        let times = times.unwrap_or_default();
+        self.warn(format!("{head}{times}{}{rest}", number(time)));
     }
 
     /// How a run ends that has come to its end time on viscous forces.
