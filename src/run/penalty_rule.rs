@@ -43,6 +43,8 @@ const HELPS_DEPTH: f64 = 0.98;
 /// first touch cannot follow, the steps after it may.
 const FORGOTTEN: u32 = 20;
 const SOON: u32 = 3;
+/// Times of the error under which a penalty is raised no more that it may grow to: beyond, that penalty is too soft after all.
+const OUTGROWN: f64 = 2.0;
 /// Steps until another raise is tried after one that did not serve, twice as many after the next one.
 const WAIT: u32 = 2;
 
@@ -51,6 +53,8 @@ const WAIT: u32 = 2;
 struct PairRule {
     /// Penalty that did not serve (force / length^3); infinite where none is known.
     bad: f64,
+    /// Error of all pairs at which no stiffer one is to be tried at all; infinite where that was not found.
+    kept: f64,
     /// Steps for which that is remembered, and those until another raise is tried.
     remembered: u32,
     wait: u32,
@@ -65,6 +69,7 @@ struct PairRule {
 impl PairRule {
     const NEW: PairRule = PairRule {
         bad: f64::INFINITY,
+        kept: f64::INFINITY,
         remembered: 0,
         wait: 0,
         failed: 0,
@@ -94,6 +99,7 @@ impl PenaltyRule {
     pub(super) fn put(&self, out: &mut Writer) {
         for PairRule {
             bad,
+            kept,
             remembered,
             wait,
             failed,
@@ -102,6 +108,7 @@ impl PenaltyRule {
         } in &self.pairs
         {
             out.f64(*bad);
+            out.f64(*kept);
             [remembered, wait, failed]
                 .into_iter()
                 .for_each(|n| out.u32(*n));
@@ -116,6 +123,7 @@ impl PenaltyRule {
         for pair in &mut rule.pairs {
             *pair = PairRule {
                 bad: from.f64()?,
+                kept: from.f64()?,
                 remembered: from.u32()?,
                 wait: from.u32()?,
                 failed: from.u32()?,
@@ -168,7 +176,12 @@ impl PenaltyRule {
             // Between what serves and what does not.
             let untenable = total > UNTENABLE * accuracy;
             let known = again || !untenable || rule.remembered + SOON > FORGOTTEN;
-            let bad = if known { rule.bad } else { f64::INFINITY };
+            let outgrown =
+                untenable && total > OUTGROWN * rule.kept || rule.kept.is_finite() && sunk > 1.0;
+            let bad = match known && !outgrown {
+                true => rule.bad,
+                false => f64::INFINITY,
+            };
             let between = (penalties[index] * bad).sqrt();
             let bound = ruled.stiffest.min(between);
             let eps = (penalties[index] * by_error.max(by_depth.min(most))).min(bound);
@@ -193,13 +206,20 @@ impl PenaltyRule {
         }
     }
 
-    /// Raises the penalty of a pair no more: a stiffer one is worse for a reason that stays. Two half passes have one penalty.
-    pub fn keep(&mut self, model: &Model, index: usize, penalty: f64) {
+    /// Raises the penalty of a pair no more, as long as the error of now does not grow and no point sinks in too deep: a stiffer one is
+    /// worse for a reason that stays. Two half passes have one penalty.
+    pub fn keep(&mut self, model: &Model, index: usize, penalty: f64, error: f64) {
         let other = model.pairs[index].half.map_or(index, |half| half.other);
         for pair in [index, other] {
             let rule = &mut self.pairs[pair];
-            (rule.bad, rule.remembered) = (penalty, FOR_GOOD);
+            (rule.bad, rule.kept, rule.remembered) = (penalty, error, FOR_GOOD);
         }
+    }
+
+    /// The pairs whose penalties, now `penalties`, have been raised beyond one that was kept.
+    pub fn left_behind(&self, penalties: &[f64]) -> impl Iterator<Item = usize> {
+        let rules = self.pairs.iter().zip(penalties).enumerate();
+        rules.filter_map(|(i, (rule, now))| (rule.kept.is_finite() && *now > rule.bad).then_some(i))
     }
 
     /// Whether a raise lowered the errors by enough to be kept.
@@ -209,6 +229,10 @@ impl PenaltyRule {
 
     /// Takes down the errors of an accepted step, of which the penalties were those `before` and are those of `now`.
     pub fn remember(&mut self, errors: &Errors, before: &[f64], now: &[f64]) {
+        for index in self.left_behind(now).collect::<Vec<_>>() {
+            let rule = &mut self.pairs[index];
+            (rule.bad, rule.kept, rule.remembered) = (f64::INFINITY, f64::INFINITY, 0);
+        }
         let all = errors.forces.iter().zip(&errors.sunk);
         for ((rule, errors), (before, now)) in
             (self.pairs.iter_mut().zip(all)).zip(before.iter().zip(now))
@@ -245,7 +269,7 @@ impl PenaltyRule {
             rule.wait = rule.wait.saturating_sub(1);
             rule.remembered = rule.remembered.saturating_sub(1);
             if rule.remembered == 0 {
-                (rule.bad, rule.failed) = (f64::INFINITY, 0);
+                (rule.bad, rule.kept, rule.failed) = (f64::INFINITY, f64::INFINITY, 0);
             }
             let of = |i: usize| [errors.forces[i], errors.sunk[i]];
             let Some(factor) = softer(pair, index, of) else {
@@ -322,162 +346,4 @@ pub fn rules_all(model: &Model) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::build::build;
-    use crate::scene;
-    use serde_json::json;
-
-    /// A block under two tools, both with automatic penalties.
-    fn model() -> Model {
-        let tool = |z: f64| json!({ "plane": { "center": [0.5, 0.5, z], "size": [4, 4] }, "side": { "point": [0.5, 0.5, 0.5] } });
-        let scene = json!({
-            "covact": 1,
-            "materials": { "m": { "st_venant_kirchhoff": { "E": 1e4, "nu": 0.3 } } },
-            "bodies": { "block": {
-                "mesh": { "block": { "min": [0, 0, 0], "max": [1, 1, 1], "elements": [1, 1, 1] } }, "material": "m"
-            } },
-            "surfaces": { "above": tool(1.0), "below": tool(0.0) },
-            "contacts": {
-                "above": { "slave": "block.top", "master": "above" },
-                "below": { "slave": "block.bottom", "master": "below", "accuracy": 1e-3 }
-            },
-            "supports": { "side": { "on": "block.x_min", "fixed": true } }
-        });
-        let loaded =
-            scene::parse(&scene.to_string(), "scene.json").unwrap_or_else(|e| panic!("{e}"));
-        build(&loaded).unwrap_or_else(|e| panic!("{e}"))
-    }
-
-    fn errors(forces: [f64; 2], sunk: [f64; 2]) -> Errors {
-        Errors {
-            forces: forces.to_vec(),
-            sunk: sunk.to_vec(),
-        }
-    }
-
-    #[test]
-    fn only_pairs_that_make_the_error_are_raised() {
-        let (model, rule) = (model(), PenaltyRule::new(&model()));
-        let raised = |forces, sunk| {
-            let mut penalties = vec![1.0, 1.0];
-            let any = rule.raise(&model, &errors(forces, sunk), false, &mut penalties);
-            assert_eq!(any, penalties != [1.0, 1.0]);
-            penalties
-                .iter()
-                .map(|p| (p * 1e6).round() / 1e6)
-                .collect::<Vec<_>>()
-        };
-        // Within the band of both; above that of the more accurate one, which makes next to nothing of it, and all of it.
-        assert_eq!(raised([1e-3, 1e-3], [0.0; 2]), [1.0, 1.0]);
-        assert_eq!(raised([9e-3, 1e-4], [0.0; 2]), [1.0, 1.0]);
-        assert_eq!(raised([0.0, 5e-3], [0.0; 2]), [1.0, 5.0]);
-        // Towards the accuracy asked for; farther at once where contact gives way more than the block.
-        assert_eq!(raised([0.04, 0.0], [0.0; 2]), [10.0, 1.0]);
-        assert_eq!(raised([0.8, 0.0], [0.0; 2]), [100.0, 1.0]);
-        assert_eq!(raised([8.0, 0.0], [0.0; 2]), [2000.0, 1.0]);
-        // Too deep, however small the error.
-        assert_eq!(raised([1e-6, 1e-6], [0.0, 2.0]), [1.0, 20.0]);
-    }
-
-    /// What the first penalty becomes for an error of its pair.
-    fn raised(rule: &PenaltyRule, model: &Model, again: bool, error: f64, from: f64) -> f64 {
-        let mut penalties = vec![from; 2];
-        let errors = errors([error, 0.0], [0.0; 2]);
-        rule.raise(model, &errors, again, &mut penalties);
-        (penalties[0] * 1e6).round() / 1e6
-    }
-
-    #[test]
-    fn a_penalty_that_did_not_serve_is_approached_by_halves_and_forgotten() {
-        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
-        rule.reject(&[1.0, 1.0], &[100.0, 1.0]);
-        let of = |rule: &PenaltyRule, again, error| raised(rule, &model, again, error, 1.0);
-        // Half as far, by the logarithm; not at once in a later step, unless the error is large.
-        assert_eq!(of(&rule, true, 0.02), 5.0);
-        assert_eq!(of(&rule, true, 0.2), 10.0);
-        assert_eq!(of(&rule, false, 0.02), 1.0);
-        assert_eq!(of(&rule, false, 0.2), 10.0);
-        let mut penalties = vec![1.0, 1.0];
-        let none = errors([0.0; 2], [0.0; 2]);
-        for _ in 0..SOON {
-            rule.lower(&model, &none, 0, &mut penalties);
-        }
-        // A large error is not borne for long, a small one is.
-        assert_eq!(of(&rule, false, 0.2), 50.0);
-        assert_eq!(of(&rule, true, 0.02), 5.0);
-        for _ in SOON..FORGOTTEN {
-            rule.lower(&model, &errors([0.0; 2], [0.0; 2]), 0, &mut penalties);
-        }
-        assert_eq!(of(&rule, false, 0.2), 50.0);
-        assert_eq!(penalties, [1.0, 1.0]);
-    }
-
-    #[test]
-    fn a_penalty_that_is_kept_is_raised_no_more() {
-        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
-        assert_eq!(raised(&rule, &model, false, 8.0, 3.0), 6000.0);
-        rule.keep(&model, 0, 3.0);
-        let none = errors([0.0; 2], [0.0; 2]);
-        for _ in 0..2 * FORGOTTEN {
-            rule.lower(&model, &none, 0, &mut [3.0, 3.0]);
-        }
-        for error in [0.02, 0.8, 8.0] {
-            for again in [false, true] {
-                assert_eq!(raised(&rule, &model, again, error, 3.0), 3.0);
-            }
-        }
-    }
-
-    /// A step that fails softens what is far stiffer than asked for, once, by what its error was at the last accepted step.
-    #[test]
-    fn a_failed_step_eases_what_is_too_stiff() {
-        let (model, mut rule) = (model(), PenaltyRule::new(&model()));
-        let mut penalties = vec![1e6, 1e6];
-        assert!(!rule.ease(&model, &mut penalties));
-        rule.remember(&errors([4e-6, 2e-3], [0.0; 2]), &[1e6, 1e6], &[1e6, 1e6]);
-        assert!(rule.ease(&model, &mut penalties));
-        assert_eq!(penalties, [1e3, 1e6]);
-        // Its error is by first order what was asked for.
-        assert!(!rule.ease(&model, &mut penalties));
-        // The error that was measured before a penalty rose by ten.
-        rule.remember(&errors([4e-4, 2e-3], [0.0; 2]), &[1e3, 1e6], &[1e4, 1e6]);
-        penalties[0] = 1e4;
-        assert!(rule.ease(&model, &mut penalties));
-        assert_eq!(penalties, [100.0, 1e6]);
-    }
-
-    #[test]
-    fn what_costs_iterations_for_no_error_is_lowered() {
-        let model = model();
-        let lowered = |error: f64, iterations: u32| {
-            let (mut rule, mut penalties) = (PenaltyRule::new(&model), vec![1.0, 1.0]);
-            for step in 1..=IDLE {
-                let any = rule.lower(
-                    &model,
-                    &errors([error, 0.0], [0.0; 2]),
-                    iterations,
-                    &mut penalties,
-                );
-                assert_eq!(any, step == IDLE && penalties[0] != 1.0);
-            }
-            (penalties[0] * 1e6).round() / 1e6
-        };
-        assert_eq!(lowered(4e-5, MANY + 1), 0.01);
-        assert_eq!(lowered(2e-4, MANY + 1), 0.05);
-        assert_eq!(lowered(4e-5, MANY), 1.0);
-        assert_eq!(lowered(1e-3, MANY + 1), 1.0);
-        assert_eq!(lowered(0.0, MANY + 1), 1.0);
-    }
-
-    #[test]
-    fn what_smaller_steps_do_not_help_is_accepted_at_last() {
-        let model = model();
-        let told = |error, cuts| untenable(&model, &errors([error, 0.0], [0.0; 2]), cuts);
-        assert_eq!(told(7e-3, 0), None);
-        assert_eq!(told(0.02, 0), Some(0.02));
-        assert_eq!(told(0.02, 2), None);
-        assert_eq!(told(0.5, 2), Some(0.5));
-        assert_eq!(told(0.5, 2 * RELENTS + 1), None);
-    }
-}
+mod tests;

@@ -18,3 +18,10 @@ pub(super) struct Progress {
     /// Largest strain energy at which the terms beyond linear elements were measured.
     pub measured: f64,
 }
+
+impl Progress {
+    /// Takes back warnings that begin like this, since what they told has passed.
+    pub fn forget(&mut self, head: &str) {
+        self.warnings.retain(|warning| !warning.starts_with(head));
+    }
+}

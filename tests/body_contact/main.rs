@@ -18,6 +18,7 @@ mod patch;
 mod segment_histories;
 mod segments;
 mod self_contact;
+mod sheet_on_block;
 mod shells;
 mod sliding;
 #[path = "../verification/support.rs"]

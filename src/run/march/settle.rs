@@ -42,8 +42,8 @@ struct Tried {
     totals: Totals,
     /// What rigid contact would change there, where that was measured.
     limit: Option<RigidLimit>,
-    /// Points in contact, per pair.
-    active: Vec<usize>,
+    /// Points in contact and the deepest penetration (length), per pair.
+    points: Vec<(usize, f64)>,
     /// The raise that led there, where it changed a force by far more than that said; it went out from there itself.
     outran: Option<Box<Tried>>,
 }
@@ -187,13 +187,13 @@ impl<'m> March<'_, 'm> {
                 };
                 if let Some(from) = from {
                     outputs.fields.back(fields);
-                    let penalty = kept.map(|index| (index, from.penalties[index]));
+                    let penalty = kept.map(|i| (i, from.penalties[i], from.errors.sum()));
                     match self.back((step, end), (committed, walk), trial, from, why) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),
                     }
-                    if let Some((index, penalty)) = penalty {
-                        self.rule.keep(self.model, index, penalty);
+                    if let Some((index, penalty, error)) = penalty {
+                        self.rule.keep(self.model, index, penalty, error);
                     }
                     // Where it does not help, half as far would not.
                     raises = 0;
@@ -227,7 +227,8 @@ impl<'m> March<'_, 'm> {
             // Solved again from where it is.
             std::mem::swap(&mut trial.histories, &mut histories);
             let pairs = outputs.fields.bearings.pairs.iter();
-            let active = pairs.map(|bearing| bearing.active).collect();
+            let deepest = |b: &Bearing| b.deepest.map_or(0.0, |point| point.depth);
+            let points = pairs.map(|b| (b.active, deepest(b))).collect();
             outputs.fields.back(fields);
             let softer = std::mem::replace(&mut self.assembler.penalties, stiffer);
             self.hold_given();
@@ -241,7 +242,7 @@ impl<'m> March<'_, 'm> {
                 errors: ruling,
                 totals: converged.totals.clone(),
                 limit: fresh,
-                active,
+                points,
                 outran,
             };
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
@@ -419,6 +420,9 @@ impl<'m> March<'_, 'm> {
                 .filter(|(pair, _)| !corners::has_folds(pair))
                 .for_each(|(_, e)| *e *= growth / sum);
             self.rule.raise(model, &errors, false, &mut penalties);
+        }
+        for index in self.rule.left_behind(&penalties) {
+            self.progress.forget(&corners::outrun(self.model, index));
         }
         (self.rule).remember(&last, &self.assembler.penalties, &penalties);
         self.assembler.penalties.copy_from_slice(&penalties);
