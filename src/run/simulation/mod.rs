@@ -8,6 +8,7 @@ mod smooth;
 mod stages;
 mod stepping;
 mod substitute;
+mod unseen_master;
 mod variant;
 
 pub use read::{Force, NodalField, ReadError};
@@ -32,6 +33,7 @@ use serde::{Deserialize, Serialize};
 use smooth::smooth_pairs;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use unseen_master::with_seen_masters;
 use variant::{Safe, edges_may, names_element, points_may, with_exchanged, with_sides};
 
 /// Nobody interrupts.
@@ -180,11 +182,20 @@ impl<'o> Simulation<'o> {
             .build()
             .map_err(|e| RunError::scene(&scene, "/solution/threads", e.to_string()))?;
         let observer = &mut *options.observer;
-        let (safe, rims) = match sections {
+        let (mut safe, rims) = match sections {
             Some(sections) => Changes::read(sections, &scene)?,
             None => (pool.install(|| with_joined(&scene)), Rims::Out),
         };
-        let running = pool.install(|| running(&scene, safe.as_ref(), sections, rims, observer))?;
+        let mut begin = |safe: Option<&Safe>| {
+            pool.install(|| running(&scene, safe, sections, rims, &mut *observer))
+        };
+        let mut running = begin(safe.as_ref())?;
+        let model = &running.borrow_owner().model;
+        let seen = with_seen_masters(&scene, safe.as_ref(), model).filter(|_| sections.is_none());
+        if let Some(seen) = seen {
+            running = begin(Some(&seen))?;
+            safe = Some(seen);
+        }
         let run = running.borrow_dependent();
         let history = Table {
             columns: run.columns(),

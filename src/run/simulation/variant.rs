@@ -113,7 +113,7 @@ pub(super) fn with_edges(
 }
 
 /// Whether friction has a direction of the master, so that the sides of a contact are not alike.
-fn is_directed(contact: &Contact) -> bool {
+pub(super) fn is_directed(contact: &Contact) -> bool {
     matches!(contact.friction, Some(Friction::Orthotropic { .. }))
 }
 
