@@ -242,6 +242,9 @@ struct SoakArgs {
     /// Seconds that a scene may take
     #[arg(long, value_name = "SECONDS", default_value_t = 300)]
     limit: u64,
+    /// Repeat what reaches its end in half of the steps and under ten times the penalty, and compare forces
+    #[arg(long)]
+    repeat: bool,
     /// Folder for scenes and results, a folder per seed
     #[arg(short, long, value_name = "FOLDER")]
     out: PathBuf,

@@ -16,6 +16,7 @@ pub(super) fn soak(args: &SoakArgs) -> u8 {
         program,
         folder: args.out.clone(),
         limit: Duration::from_secs(args.limit),
+        repeat: args.repeat,
     };
     let one = |seed: u64| {
         let played = play(seed, &settings)?;
@@ -48,6 +49,18 @@ pub(super) fn soak(args: &SoakArgs) -> u8 {
         count(&|e| *e == Ending::Hung),
         count(&|e| matches!(e, Ending::Silent(_))),
     ));
+    let repeated = || played.iter().filter_map(|p| Some((p, p.repeated?.off)));
+    if args.repeat {
+        let told = || repeated().filter(|(p, _)| p.warnings > 0);
+        report::stderr(&format!(
+            "{} were repeated, {} of them off by more than 2 % of their largest force; {} carry a warning, {} of these are off by \
+             more than 1 %\n",
+            repeated().count(),
+            repeated().filter(|(_, off)| *off > 0.02).count(),
+            told().count(),
+            told().filter(|(_, off)| *off > 0.01).count(),
+        ));
+    }
     match played.iter().all(|p| p.ending.fair()) {
         true => 0,
         false => exit::NOT_CONVERGED,
@@ -61,8 +74,9 @@ fn line(p: &Played) -> String {
         }
         Ending::Done | Ending::Hung => String::new(),
     };
+    let off = (p.repeated).map_or(String::new(), |r| format!(" {:>6.2} % off", 100.0 * r.off));
     format!(
-        "{:>7} {:<7} {:>5} steps {:>6} iterations {:>4} cuts {:>7.2} s  {}{why}\n",
+        "{:>7} {:<7} {:>5} steps {:>6} iterations {:>4} cuts {:>7.2} s{off}  {}{why}\n",
         p.seed,
         p.ending.name(),
         p.steps,

@@ -1,5 +1,5 @@
 //! Is a result what it says? From its history and summary alone.
-use super::RandomScene;
+use super::{Matter, RandomScene};
 use crate::output::{RunStatus, Summary, Table};
 
 /// Something that is wrong with a result and that the run did not tell.
@@ -30,12 +30,18 @@ pub fn audit(scene: &RandomScene, summary: &Summary, history: &Table) -> Result<
             summary.status.name()
         ));
     }
-    for row in &history.rows {
-        if let Some(i) = row.iter().position(|x| !x.is_finite()) {
+    let released = scene.effects.released_from(scene);
+    let time = history.column("time").unwrap_or_default();
+    for (row, time) in history.rows.iter().zip(time) {
+        // Where no contact is active there is no gap.
+        let gone = released.is_some_and(|released| time > released);
+        let known = |i: usize| !(gone && history.columns[i] == "gap.min");
+        if let Some(i) = (0..row.len()).find(|i| !row[*i].is_finite() && known(*i)) {
             return fail(format!("{} is {}", history.columns[i], row[i]));
         }
     }
-    let (largest, out_of_balance) = balance(history);
+    let (largest, out_of_balance) = balance(history, released);
+    let out_of_balance = out_of_balance.filter(|_| scene.effects.balances());
     if let Some(finding) = out_of_balance.filter(|_| !told(&["viscous forces"])) {
         return Err(finding);
     }
@@ -45,9 +51,12 @@ pub fn audit(scene: &RandomScene, summary: &Summary, history: &Table) -> Result<
     };
     // Without friction a state does not depend on the steps that led to it; the sum over them is off by what it sums up
     // with.
-    let energies = [column("energy.external")?, column("energy.imbalance")?];
-    let scale = energies[0].iter().fold(0.0f64, |a, x| a.max(x.abs()));
-    let off = energies[1].iter().fold(0.0f64, |a, x| a.max(x.abs()));
+    let rest = match scene.effects.matter {
+        Matter::Inertia { .. } => "energy.integrator",
+        _ => "energy.imbalance",
+    };
+    let [scale, off] = [column("energy.external")?, column(rest)?]
+        .map(|of| of.iter().fold(0.0f64, |a, x| a.max(x.abs())));
     if scene.mu.is_some() && off > ENERGY * scale && !told(&["energ"]) {
         return fail(format!(
             "the energies differ by {off:.2e} of {scale:.2e}, and nothing was told"
@@ -63,18 +72,34 @@ pub fn audit(scene: &RandomScene, summary: &Summary, history: &Table) -> Result<
     if summary.status != RunStatus::Done {
         return Ok(());
     }
-    let pressing = column("points.active")?.last().is_some_and(|n| *n > 0.0) && largest > 0.0;
+    let touched = column("points.active")?;
+    if let Some(released) = released {
+        // What is let go is not in contact at the end.
+        let before = column("time")?
+            .iter()
+            .zip(&touched)
+            .any(|(t, n)| *t <= released && *n > 0.0);
+        return match before {
+            true => Ok(()),
+            false => fail("the run is done, but there was no contact".to_owned()),
+        };
+    }
+    let pressing = touched.last().is_some_and(|n| *n > 0.0) && largest > 0.0;
     if scene.motion.pressed && !pressing && !told(&["opened", "passed through"]) {
         return fail("the tool presses at the end, but nothing is in contact".to_owned());
     }
-    if !scene.motion.pressed && column("points.active")?.iter().all(|n| *n == 0.0) {
+    if !scene.motion.pressed && touched.iter().all(|n| *n == 0.0) {
         return fail("the run is done, but there was no contact".to_owned());
     }
     Ok(())
 }
 
-/// The largest of all forces on the bodies, and the first step at which they do not cancel.
-fn balance(history: &Table) -> (f64, Option<Finding>) {
+/// The largest of all forces on the bodies, and the first step at which they do not cancel before contacts are released: then they are
+/// loads, which are no columns.
+fn balance(history: &Table, released: Option<f64>) -> (f64, Option<Finding>) {
+    let times = history.column("time").unwrap_or_default();
+    let stays = |t: &f64| released.is_none_or(|released| *t <= released);
+    let rows = times.iter().take_while(|t| stays(t)).count();
     let axis = |axis: &str| -> Vec<Vec<f64>> {
         let end = format!(".{axis}");
         let acting = |c: &&String| c.starts_with("force.") && c.ends_with(&end);
@@ -85,7 +110,7 @@ fn balance(history: &Table) -> (f64, Option<Finding>) {
     let values = all.iter().flatten().flatten();
     let largest = values.fold(0.0f64, |a, f| a.max(f.abs()));
     for (axis, columns) in ["x", "y", "z"].iter().zip(&all) {
-        for row in 0..history.rows.len() {
+        for row in 0..rows {
             let sum: f64 = columns.iter().map(|c| c[row]).sum();
             if sum.abs() > BALANCE * largest {
                 let found = format!(

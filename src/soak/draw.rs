@@ -1,5 +1,6 @@
 //! What a seed means.
 use super::clearance::{Place, clearance};
+use super::effects::{Effects, draw_effects};
 use covact_geometry::{NurbsPatch, Vec3};
 use fastrand::Rng;
 use std::f64::consts::PI;
@@ -128,6 +129,8 @@ pub struct RandomScene {
     pub steps: u32,
     /// Held at the other end along x.
     pub mirrored: bool,
+    /// What else acts.
+    pub effects: Effects,
 }
 
 fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
@@ -148,6 +151,13 @@ pub fn draw(seed: u64) -> RandomScene {
             return scene;
         }
     }
+}
+
+/// The scene of a seed with effects.
+pub fn draw_with_effects(seed: u64) -> RandomScene {
+    let mut scene = draw(seed);
+    scene.effects = draw_effects(&scene);
+    scene
 }
 
 /// A scene, which may have no room to press in, or slave points too far apart to feel it.
@@ -198,6 +208,7 @@ fn attempt(seed: u64, rng: &mut Rng) -> RandomScene {
         penalty: chance(rng, 0.4).then(|| 10f64.powf(between(rng, -1.0, 1.0))),
         steps: rng.u32(8..20),
         mirrored: false,
+        effects: Effects::default(),
     }
 }
 

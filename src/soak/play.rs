@@ -1,7 +1,8 @@
 //! Runs random scenes, each in a process of its own, so that a crash or a hang is a result.
-use super::{Frame, RandomScene, audit, draw};
+use super::{Frame, RandomScene, audit, draw_with_effects, off, repetition};
 use crate::output::{Summary, read_csv};
 use serde::Serialize;
+use serde_json::Value;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,20 @@ pub struct Settings {
     pub folder: PathBuf,
     /// A run that takes longer hangs.
     pub limit: Duration,
+    /// Whether what reaches its end is repeated in half of the steps and under ten times the penalty.
+    pub repeat: bool,
+}
+
+/// Part of the largest force by which a result may be off without a word.
+const UNTOLD: f64 = 0.02;
+
+/// What a repetition says of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Repeated {
+    /// How far the force on the tool is off, relative to its largest one.
+    pub off: f64,
+    /// Number of warnings of the repetition: with any, it is no judge of a run without.
+    pub warnings: usize,
 }
 
 /// How a random scene ended.
@@ -55,6 +70,8 @@ pub struct Played {
     pub warnings: usize,
     /// Elapsed time (s).
     pub seconds: f64,
+    /// What its repetition says; none: there was none, or it did not reach its end.
+    pub repeated: Option<Repeated>,
 }
 
 impl Ending {
@@ -80,28 +97,48 @@ impl Ending {
 /// # Errors
 /// Its folder cannot be written, or the program cannot be started.
 pub fn play(seed: u64, settings: &Settings) -> io::Result<Played> {
-    let scene = draw(seed);
+    let scene = draw_with_effects(seed);
     let folder = settings.folder.join(format!("seed_{seed:06}"));
-    let out = folder.join("out");
-    if out.exists() {
-        // Results of an earlier run must not pass for this one's.
-        fs::remove_dir_all(&out)?;
-    }
     fs::create_dir_all(&folder)?;
     let written = scene.write(&Frame::default());
-    fs::write(
-        folder.join("scene.json"),
-        serde_json::to_string_pretty(&written.scene)?,
-    )?;
-    if let Some(cad) = written.cad()? {
-        fs::write(folder.join("tool.json"), cad)?;
+    for (name, text) in [
+        ("tool.json", written.cad()?),
+        ("sheet.json", written.sheet()?),
+    ] {
+        if let Some(text) = text {
+            fs::write(folder.join(name), text)?;
+        }
     }
     let start = Instant::now();
-    let ended = run(settings, &folder)?;
+    let (ended, summary) = run(settings, (&folder, ["scene.json", "out"]), &written.scene)?;
     let seconds = start.elapsed().as_secs_f64();
-    let summary = Summary::read(&out.join("summary.json")).ok();
-    let ending = judge(&scene, ended, summary.as_ref(), &folder);
+    let mut ending = judge(&scene, ended, summary.as_ref(), &folder);
     let count = |of: &dyn Fn(&Summary) -> u64| summary.as_ref().map_or(0, of);
+    let warnings = summary.as_ref().map_or(0, |s| s.warnings.len());
+    let mut repeated = None;
+    if settings.repeat && ending == Ending::Done {
+        let again = repetition(&scene, &written.scene);
+        let (ended, summary) = run(settings, (&folder, ["again.json", "again"]), &again)?;
+        let [first, second] =
+            ["out", "again"].map(|out| read_csv(&folder.join(out).join("history.csv")));
+        if let (Some(true), Some(summary), Ok(first), Ok(second)) =
+            (ended.map(|status| status.success()), summary, first, second)
+        {
+            repeated = off(&scene, &first, &second).map(|off| Repeated {
+                off,
+                warnings: summary.warnings.len(),
+            });
+        }
+        if let Some(Repeated { off, warnings: 0 }) = repeated
+            && off > UNTOLD
+            && warnings == 0
+        {
+            ending = Ending::Silent(format!(
+                "its force is {:.1} % off from that of half the steps and ten times the penalty, and nothing was told",
+                100.0 * off
+            ));
+        }
+    }
     Ok(Played {
         seed,
         story: scene.story(),
@@ -109,32 +146,45 @@ pub fn play(seed: u64, settings: &Settings) -> io::Result<Played> {
         steps: count(&|s| s.steps.into()) as u32,
         iterations: count(&|s| s.newton_iterations),
         cuts: count(&|s| s.cuts.into()) as u32,
-        warnings: summary.as_ref().map_or(0, |s| s.warnings.len()),
+        warnings,
         seconds,
+        repeated,
     })
 }
 
-/// Runs the program on `scene.json`; none: it was stopped at its limit.
-fn run(settings: &Settings, folder: &Path) -> io::Result<Option<ExitStatus>> {
+/// Runs the program on a scene, which it writes; the status is none where it was stopped at its limit.
+fn run(
+    settings: &Settings,
+    (folder, [file, out]): (&Path, [&str; 2]),
+    scene: &Value,
+) -> io::Result<(Option<ExitStatus>, Option<Summary>)> {
+    if folder.join(out).exists() {
+        // Results of an earlier run must not pass for this one's.
+        fs::remove_dir_all(folder.join(out))?;
+    }
+    fs::write(folder.join(file), serde_json::to_string_pretty(scene)?)?;
+    let said = File::create(folder.join(out).with_extension("stderr.txt"))?;
     let mut child = Command::new(&settings.program)
-        .args(["run", "scene.json", "-o", "out", "--quiet", "--no-report"])
+        .args(["run", file, "-o", out, "--quiet", "--no-report"])
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(File::create(folder.join("stderr.txt"))?)
+        .stderr(said)
         .spawn()?;
     let start = Instant::now();
-    loop {
+    let status = loop {
         if let Some(status) = child.try_wait()? {
-            return Ok(Some(status));
+            break Some(status);
         }
         if start.elapsed() > settings.limit {
             child.kill()?;
             child.wait()?;
-            return Ok(None);
+            break None;
         }
         std::thread::sleep(Duration::from_millis(10));
-    }
+    };
+    let summary = Summary::read(&folder.join(out).join("summary.json")).ok();
+    Ok((status, summary))
 }
 
 fn judge(
@@ -146,7 +196,7 @@ fn judge(
     let Some(status) = ended else {
         return Ending::Hung;
     };
-    let said = fs::read_to_string(folder.join("stderr.txt")).unwrap_or_default();
+    let said = fs::read_to_string(folder.join("out.stderr.txt")).unwrap_or_default();
     let first = said.lines().next().unwrap_or_default().to_owned();
     let summary = match (status.code(), summary) {
         (None | Some(1 | 101), _) => return Ending::Crashed(format!("{status}: {first}")),

@@ -22,6 +22,8 @@ pub struct Written {
     pub scene: Value,
     /// The patches of `tool.json`; empty: the scene names no file.
     pub patches: Vec<NurbsPatch>,
+    /// The face of `sheet.json`, where the sheet is one.
+    pub face: Option<NurbsPatch>,
 }
 
 impl Written {
@@ -30,15 +32,29 @@ impl Written {
     /// # Errors
     /// Those of the JSON library; none is known to occur.
     pub fn cad(&self) -> Result<Option<String>, serde_json::Error> {
-        if self.patches.is_empty() {
-            return Ok(None);
+        match self.patches.is_empty() {
+            true => Ok(None),
+            false => text(self.patches.clone()).map(Some),
         }
-        let unit = LengthUnit {
-            name: "mm".into(),
-            to_metre: Some(1e-3),
-        };
-        write_json(&CadFile::of(self.patches.clone(), unit)).map(Some)
     }
+
+    /// The contents of `sheet.json`.
+    ///
+    /// # Errors
+    /// As [`Self::cad`].
+    pub fn sheet(&self) -> Result<Option<String>, serde_json::Error> {
+        let face = self.face.clone();
+        face.map(|face| text(vec![face])).transpose()
+    }
+}
+
+/// A CAD file of patches.
+fn text(patches: Vec<NurbsPatch>) -> Result<String, serde_json::Error> {
+    let unit = LengthUnit {
+        name: "mm".into(),
+        to_metre: Some(1e-3),
+    };
+    write_json(&CadFile::of(patches, unit))
 }
 
 impl Frame {
@@ -92,7 +108,12 @@ impl RandomScene {
                 "free": { "force": { "z": { "table": [[0, 0], [end, force]] } } }
             });
         }
-        Written { scene, patches }
+        self.effects.apply(self, frame, &mut scene);
+        Written {
+            scene,
+            patches,
+            face: self.effects.face(self),
+        }
     }
 
     fn slave(&self) -> &'static str {
@@ -274,8 +295,9 @@ impl RandomScene {
         };
         let augmented = if self.augmented { ", augmented" } else { "" };
         format!(
-            "{tool}{facets} {way} on {body} ({}), {friction}{augmented}",
-            self.element
+            "{tool}{facets} {way} on {body} ({}), {friction}{augmented}{}",
+            self.element,
+            self.effects.story()
         )
     }
 }

@@ -1,0 +1,71 @@
+//! The same scene in half of the steps and under ten times the penalty: what its forces ought to be.
+use super::draw::RandomScene;
+use super::effects::Matter;
+use crate::output::Table;
+use serde_json::{Value, json};
+
+/// Part by which penalties and tolerances are tighter.
+const TIGHTER: f64 = 0.1;
+
+/// The scene to repeat a written one by.
+pub fn repetition(of: &RandomScene, scene: &Value) -> Value {
+    let mut scene = scene.clone();
+    let inert = matches!(of.effects.matter, Matter::Inertia { .. });
+    let contacts = scene["contacts"].as_object_mut().into_iter();
+    for contact in contacts.flat_map(|contacts| contacts.values_mut()) {
+        if contact.get("augmentation").is_some() || inert && contact.get("penalty").is_none() {
+            continue;
+        }
+        match contact.get("penalty").and_then(|p| p["scaled"].as_f64()) {
+            Some(factor) => contact["penalty"]["scaled"] = json!(factor / TIGHTER),
+            None => contact["accuracy"] = json!(TIGHTER * 4e-3),
+        }
+    }
+    let step = match scene["solution"].get("step") {
+        _ if inert => {
+            scene["solution"]["dynamics"]["tolerance"] = json!(TIGHTER * 1e-3);
+            return scene;
+        }
+        Some(step) => ["initial", "max", "min"].map(|key| step[key].as_f64().unwrap_or(0.0)),
+        // Half of the default.
+        None => [0.1, 0.1, 1e-5],
+    };
+    let [initial, max, min] = step.map(|size| 0.5 * size);
+    scene["solution"]["step"] = json!({ "initial": initial, "max": max, "min": min });
+    scene
+}
+
+/// How far the force on the tool is off at the end of its way, relative to its largest one; with inertia, which makes it swing, its
+/// mean over the run. None: a history says nothing of it.
+pub fn off(of: &RandomScene, run: &Table, repeated: &Table) -> Option<f64> {
+    let inert = matches!(of.effects.matter, Matter::Inertia { .. });
+    let until = of.effects.released_from(of);
+    let mut squares = 0.0f64;
+    let mut largest = 0.0f64;
+    for axis in ["x", "y", "z"] {
+        let column = format!("force.tool.{axis}");
+        let force = |table: &Table| -> Option<(f64, f64)> {
+            let (times, forces) = (table.column("time")?, table.column(&column)?);
+            let rows = || (times.iter().copied()).zip(forces.iter().copied());
+            let most = forces.iter().fold(0.0f64, |most, f| most.max(f.abs()));
+            let at_end = || match until {
+                Some(end) => rows().min_by(|a, b| (a.0 - end).abs().total_cmp(&(b.0 - end).abs())),
+                None => rows().next_back(),
+            };
+            let mut mean = 0.0;
+            for ((t, f), (next, g)) in rows().zip(rows().skip(1)) {
+                mean += 0.5 * (f + g) * (next - t);
+            }
+            let value = if inert {
+                mean / times.last()?
+            } else {
+                at_end()?.1
+            };
+            Some((value, most))
+        };
+        let [(a, _), (b, most)] = [force(run)?, force(repeated)?];
+        squares += (a - b).powi(2);
+        largest = largest.max(most);
+    }
+    (largest > 0.0).then(|| squares.sqrt() / largest)
+}
