@@ -35,9 +35,10 @@ const LOWER: f64 = 0.01;
 const EASE: f64 = 1e-4;
 /// Factor of a raise by depth, times how much too deep points are.
 const DEEPER: f64 = 10.0;
-/// Part of the error, or of the deepest penetration, that a raise may leave at most. Under a penalty that is far too soft the
-/// energy of contact grows with it at first; a penetration that is prescribed does not change at all.
+/// Part of the error, or of the deepest penetration, that a raise may leave at most, and the error from which on nothing is known of
+/// that. Under a penalty that is far too soft the energy of contact grows with it at first; a penetration that is prescribed does not change at all.
 const HELPS: f64 = 0.9;
+const FAR: f64 = 1.0;
 const HELPS_DEPTH: f64 = 0.98;
 /// Steps after which a penalty that did not serve is forgotten, and those after which one is where the error is untenable: what a
 /// first touch cannot follow, the steps after it may.
@@ -55,6 +56,8 @@ struct PairRule {
     bad: f64,
     /// Error of all pairs at which no stiffer one is to be tried at all; infinite where that was not found.
     kept: f64,
+    /// Error of all pairs that was not lowered by that penalty; infinite where that was not found.
+    found: f64,
     /// Steps for which that is remembered, and those until another raise is tried.
     remembered: u32,
     wait: u32,
@@ -70,6 +73,7 @@ impl PairRule {
     const NEW: PairRule = PairRule {
         bad: f64::INFINITY,
         kept: f64::INFINITY,
+        found: f64::INFINITY,
         remembered: 0,
         wait: 0,
         failed: 0,
@@ -100,6 +104,7 @@ impl PenaltyRule {
         for PairRule {
             bad,
             kept,
+            found,
             remembered,
             wait,
             failed,
@@ -109,6 +114,7 @@ impl PenaltyRule {
         {
             out.f64(*bad);
             out.f64(*kept);
+            out.f64(*found);
             [remembered, wait, failed]
                 .into_iter()
                 .for_each(|n| out.u32(*n));
@@ -124,6 +130,7 @@ impl PenaltyRule {
             *pair = PairRule {
                 bad: from.f64()?,
                 kept: from.f64()?,
+                found: from.f64()?,
                 remembered: from.u32()?,
                 wait: from.u32()?,
                 failed: from.u32()?,
@@ -176,8 +183,9 @@ impl PenaltyRule {
             // Between what serves and what does not.
             let untenable = total > UNTENABLE * accuracy;
             let known = again || !untenable || rule.remembered + SOON > FORGOTTEN;
+            let before = rule.kept.min(rule.found);
             let outgrown =
-                untenable && total > OUTGROWN * rule.kept || rule.kept.is_finite() && sunk > 1.0;
+                untenable && total > OUTGROWN * before || rule.kept.is_finite() && sunk > 1.0;
             let bad = match known && !outgrown {
                 true => rule.bad,
                 false => f64::INFINITY,
@@ -194,11 +202,12 @@ impl PenaltyRule {
         raised
     }
 
-    /// The penalties that a raise led to did not serve.
-    pub fn reject(&mut self, before: &[f64], tried: &[f64]) {
+    /// The penalties that a raise led to did not serve: they did not lower this error, or could not be followed.
+    pub fn reject(&mut self, before: &[f64], tried: &[f64], error: Option<f64>) {
         for ((rule, before), tried) in self.pairs.iter_mut().zip(before).zip(tried) {
             if tried > before {
                 rule.bad = *tried;
+                rule.found = error.unwrap_or(f64::INFINITY);
                 rule.remembered = FORGOTTEN;
                 rule.wait = WAIT << rule.failed.min(8);
                 rule.failed += 1;
@@ -222,6 +231,12 @@ impl PenaltyRule {
         rules.filter_map(|(i, (rule, now))| (rule.kept.is_finite() && *now > rule.bad).then_some(i))
     }
 
+    /// Whether nothing is known of a raise by the error that is left: where contact between bodies gives way more than these do, which hardly
+    /// feel it, its energy grows with the penalty at first.
+    pub fn unknown(model: &Model, before: &Errors) -> bool {
+        before.sum() > FAR && between_bodies(model)
+    }
+
     /// Whether a raise lowered the errors by enough to be kept.
     pub fn helped(before: &Errors, after: &Errors) -> bool {
         after.sum() < HELPS * before.sum() || after.deepest() < HELPS_DEPTH * before.deepest()
@@ -231,7 +246,8 @@ impl PenaltyRule {
     pub fn remember(&mut self, errors: &Errors, before: &[f64], now: &[f64]) {
         for index in self.left_behind(now).collect::<Vec<_>>() {
             let rule = &mut self.pairs[index];
-            (rule.bad, rule.kept, rule.remembered) = (f64::INFINITY, f64::INFINITY, 0);
+            (rule.bad, rule.kept) = (f64::INFINITY, f64::INFINITY);
+            (rule.found, rule.remembered) = (f64::INFINITY, 0);
         }
         let all = errors.forces.iter().zip(&errors.sunk);
         for ((rule, errors), (before, now)) in
@@ -269,7 +285,8 @@ impl PenaltyRule {
             rule.wait = rule.wait.saturating_sub(1);
             rule.remembered = rule.remembered.saturating_sub(1);
             if rule.remembered == 0 {
-                (rule.bad, rule.kept, rule.failed) = (f64::INFINITY, f64::INFINITY, 0);
+                (rule.bad, rule.kept) = (f64::INFINITY, f64::INFINITY);
+                (rule.found, rule.failed) = (f64::INFINITY, 0);
             }
             let of = |i: usize| [errors.forces[i], errors.sunk[i]];
             let Some(factor) = softer(pair, index, of) else {
@@ -316,6 +333,11 @@ pub fn untenable(model: &Model, errors: &Errors, cuts: u32) -> Option<f64> {
     let bound = UNTENABLE * f64::from(1 << cuts.min(RELENTS));
     let allowed = aims.fold(f64::INFINITY, |a, aim| a.min(bound * aim));
     (total > allowed).then_some(total)
+}
+
+/// Whether bodies meet bodies, and no edges of rigid surfaces.
+pub fn between_bodies(model: &Model) -> bool {
+    !model.has_rims() && model.pairs.iter().any(|p| p.body_master().is_some())
 }
 
 /// A factor to two digits: what rounding makes of an error, in other units or far from the origin, is not to reach the forces.

@@ -177,7 +177,9 @@ impl<'m> March<'_, 'm> {
                         kept = Some(index);
                         (Some(tried), corners)
                     }
-                    _ if !PenaltyRule::helped(&tried.errors, &ruling) => {
+                    _ if !PenaltyRule::unknown(self.model, &tried.errors)
+                        && !PenaltyRule::helped(&tried.errors, &ruling) =>
+                    {
                         (Some(tried), "a stiffer one does not lower the error")
                     }
                     (beyond, ..) => {
@@ -188,7 +190,9 @@ impl<'m> March<'_, 'm> {
                 if let Some(from) = from {
                     outputs.fields.back(fields);
                     let penalty = kept.map(|i| (i, from.penalties[i], from.errors.sum()));
-                    match self.back((step, end), (committed, walk), trial, from, why) {
+                    let found = penalty_rule::between_bodies(self.model).then(|| from.errors.sum());
+                    let told = (why, found);
+                    match self.back((step, end), (committed, walk), trial, from, told) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),
                     }
@@ -253,7 +257,7 @@ impl<'m> March<'_, 'm> {
                 Err(StepFailure::Interrupted) => return Ok(Err(StepFailure::Interrupted)),
                 Err(failure) => {
                     let why = failure.to_string();
-                    match self.back((step, end), (committed, walk), trial, from, &why) {
+                    match self.back((step, end), (committed, walk), trial, from, (&why, None)) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),
                     }
@@ -302,9 +306,9 @@ impl<'m> March<'_, 'm> {
         (committed, walk): (&State, &mut StepControl),
         trial: &mut State,
         from: Tried,
-        why: &str,
+        (why, error): (&str, Option<f64>),
     ) -> Result<Converged, StepFailure> {
-        self.rule.reject(&from.penalties, &self.assembler.penalties);
+        (self.rule).reject(&from.penalties, &self.assembler.penalties, error);
         self.take_back(&from.penalties);
         trial.copy_from(&from.state);
         self.observer.event(&Event::StepRetried {

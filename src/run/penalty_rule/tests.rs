@@ -66,7 +66,7 @@ fn raised(rule: &PenaltyRule, model: &Model, again: bool, error: f64, from: f64)
 #[test]
 fn a_penalty_that_did_not_serve_is_approached_by_halves_and_forgotten() {
     let (model, mut rule) = (model(), PenaltyRule::new(&model()));
-    rule.reject(&[1.0, 1.0], &[100.0, 1.0]);
+    rule.reject(&[1.0, 1.0], &[100.0, 1.0], None);
     let of = |rule: &PenaltyRule, again, error| raised(rule, &model, again, error, 1.0);
     // Half as far, by the logarithm; not at once in a later step, unless the error is large.
     assert_eq!(of(&rule, true, 0.02), 5.0);
@@ -86,6 +86,17 @@ fn a_penalty_that_did_not_serve_is_approached_by_halves_and_forgotten() {
     }
     assert_eq!(of(&rule, false, 0.2), 50.0);
     assert_eq!(penalties, [1.0, 1.0]);
+}
+
+/// A penalty that did not lower a small error is tried again where the error has grown; one that could not be followed is not.
+#[test]
+fn a_penalty_that_did_not_help_is_tried_under_a_larger_error() {
+    let (model, mut rule) = (model(), PenaltyRule::new(&model()));
+    rule.reject(&[1.0, 1.0], &[100.0, 1.0], Some(0.08));
+    assert_eq!(raised(&rule, &model, false, 0.1, 1.0), 10.0);
+    assert!(raised(&rule, &model, false, 3.0, 1.0) > 100.0);
+    rule.reject(&[1.0, 1.0], &[100.0, 1.0], None);
+    assert_eq!(raised(&rule, &model, false, 3.0, 1.0), 10.0);
 }
 
 #[test]

@@ -85,7 +85,7 @@ impl Attempts<'_, '_> {
         };
         converged.softened = true;
         converged.eased = true;
-        self.rule.reject(&penalties, full);
+        self.rule.reject(&penalties, full, None);
         Ok(converged)
     }
 
