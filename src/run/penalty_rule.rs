@@ -35,11 +35,11 @@ const LOWER: f64 = 0.01;
 const EASE: f64 = 1e-4;
 /// Factor of a raise by depth, times how much too deep points are.
 const DEEPER: f64 = 10.0;
-/// Part of the error, or of the deepest penetration, that a raise may leave at most, and the error from which on nothing is known of
-/// that. Under a penalty that is far too soft the energy of contact grows with it at first; a penetration that is prescribed does not change at all.
+/// Part of the error, or of the deepest penetration, that a raise may leave at most; a penetration that is prescribed does not change
+/// at all. Beyond the last error contact gives way more than the bodies do, and its energy grows with the penalty at first.
 const HELPS: f64 = 0.9;
-const FAR: f64 = 1.0;
 const HELPS_DEPTH: f64 = 0.98;
+const FAR: f64 = 1.0;
 /// Steps after which a penalty that did not serve is forgotten, and those after which one is where the error is untenable: what a
 /// first touch cannot follow, the steps after it may.
 const FORGOTTEN: u32 = 20;
@@ -222,6 +222,7 @@ impl PenaltyRule {
         for pair in [index, other] {
             let rule = &mut self.pairs[pair];
             (rule.bad, rule.kept, rule.remembered) = (penalty, error, FOR_GOOD);
+            rule.found = f64::INFINITY;
         }
     }
 

@@ -97,6 +97,10 @@ fn a_penalty_that_did_not_help_is_tried_under_a_larger_error() {
     assert!(raised(&rule, &model, false, 3.0, 1.0) > 100.0);
     rule.reject(&[1.0, 1.0], &[100.0, 1.0], None);
     assert_eq!(raised(&rule, &model, false, 3.0, 1.0), 10.0);
+    // What was kept is kept by its own error.
+    rule.reject(&[1.0, 1.0], &[100.0, 1.0], Some(0.08));
+    rule.keep(&model, 0, 1.0, 5.0);
+    assert_eq!(raised(&rule, &model, false, 3.0, 1.0), 1.0);
 }
 
 #[test]
