@@ -141,6 +141,7 @@ pub fn build_stage(
     };
     let first = start.index == 0;
     stages::enter(scene, &mut model, start, u)?;
+    super::both_faces::tell(&mut model);
     model.small = super::small::linearise(scene, &mut model)?;
     model.unsymmetric = symmetry(scene, &mut model)?;
     values::times(loaded, &mut model);

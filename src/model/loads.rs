@@ -53,6 +53,13 @@ pub struct LoadPoint {
     position: Vec3,
 }
 
+impl LoadPoint {
+    /// Nodes of the face that it lies on.
+    pub fn nodes(&self) -> &[u32] {
+        self.face.nodes()
+    }
+}
+
 /// Pressure that follows the deformed faces, or a couple that follows edges of sheets.
 #[derive(Debug, Clone)]
 pub struct FollowerPressure {

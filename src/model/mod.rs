@@ -1,6 +1,7 @@
 //! The model: what a scene becomes before anything is solved. All choices of effects are made here, once.
 pub(crate) mod augmentation;
 pub(crate) mod averaged;
+mod both_faces;
 pub mod build;
 pub(crate) mod constraints;
 pub(crate) mod driven;

@@ -2,7 +2,7 @@
 use super::{Model, histories};
 use crate::contact::friction::history::PointHistory;
 use crate::contact::points::SlavePoint;
-use crate::shell::{ElementBlock, ElementFault, Flow, PlasticWork, with_block};
+use crate::shell::{Block, ElementBlock, ElementFault, PlasticWork, Remembered, with_block};
 use covact_geometry::Hint;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -119,7 +119,7 @@ impl State {
     /// Continues the change from `before` to `self` by `ratio` into `out`: a start for the next step that has the
     /// rotations right to second order, where standing still would stretch a thin shell. (The condensation caches
     /// among the element states are continued too, to no effect: the next linearisation writes them before they are
-    /// read.) What material laws remember is kept as it is: it belongs to the last accepted step.
+    /// read.) What elements and laws remember is kept as it is: it belongs to the last accepted step.
     pub fn extrapolate(&self, model: &Model, before: &State, ratio: f64, out: &mut State) {
         let along = |now: &[f64], before: &[f64], out: &mut [f64]| {
             for ((o, n), b) in out.iter_mut().zip(now).zip(before) {
@@ -142,13 +142,12 @@ impl State {
         out.stabilized = self.stabilized;
     }
 
-    /// Takes the displacements and enhanced strains of an accepted step into what material laws remember; returns how these
-    /// flowed.
+    /// Takes the displacements and enhanced strains of an accepted step into what elements and their laws remember.
     ///
     /// # Errors
     /// The body and the element whose strain is impossible.
-    pub fn remember(&mut self, model: &Model) -> Result<Flow, (String, ElementFault)> {
-        let (mut first, mut all) = (0, Flow::default());
+    pub fn remember(&mut self, model: &Model) -> Result<Remembered, (String, ElementFault)> {
+        let (mut first, mut all) = (0, Remembered::default());
         for body in &model.bodies {
             let len = model.state_len(body);
             let own = first..first + len * body.block.elements();
@@ -158,7 +157,7 @@ impl State {
             }
             let (u, states) = (&self.u, &mut self.elements[own]);
             // Collected, and summed one after the other: the same bits on any number of threads.
-            let flows: Result<Vec<Flow>, _> = with_block!(&body.block, block => {
+            let changes: Result<Vec<Remembered>, _> = with_block!(&body.block, block => {
                 (states.par_chunks_mut(len).enumerate())
                     .with_min_len(64)
                     .map(|(e, state)| {
@@ -167,8 +166,56 @@ impl State {
                     })
                     .collect()
             });
-            let flows = flows.map_err(|fault| (body.name.clone(), fault))?;
-            all = std::iter::once(all).chain(flows).sum();
+            let changes = changes.map_err(|fault| (body.name.clone(), fault))?;
+            all = std::iter::once(all).chain(changes).sum();
+        }
+        Ok(all)
+    }
+
+    /// Whether there are elements that may take what presses on them into their strains, or have done so.
+    pub fn may_be_pressed(&self, model: &Model) -> bool {
+        let mut first = 0;
+        model.bodies.iter().any(|body| {
+            let len = model.state_len(body);
+            let own = first..first + len * body.block.elements();
+            first = own.end;
+            match &body.block {
+                Block::H8(block) if len > 0 => {
+                    let mut states = self.elements[own].chunks(len);
+                    block.may_be_pressed() || states.any(|state| block.is_pressed(state))
+                }
+                _ => false,
+            }
+        })
+    }
+
+    /// Takes what presses on elements into `elements`, which are those of `self` before, as [`Self::remember`] does in an accepted step: by how
+    /// much a share changes at most, and the energy of all elements.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn press(
+        &self,
+        model: &Model,
+        elements: &mut [f64],
+    ) -> Result<[f64; 2], (String, ElementFault)> {
+        let (mut first, mut all) = (0, [0.0f64; 2]);
+        for body in &model.bodies {
+            let len = model.state_len(body);
+            let own = first..first + len * body.block.elements();
+            first = own.end;
+            let block = match &body.block {
+                Block::H8(block) if len > 0 && block.has_shares() => block,
+                _ => continue,
+            };
+            let changes: Result<Vec<[f64; 2]>, _> = (elements[own].par_chunks_mut(len).enumerate())
+                .with_min_len(64)
+                .map(|(e, state)| block.press(e, &body.displacements(block, e, &self.u), state))
+                .collect();
+            let changes = changes.map_err(|fault| (body.name.clone(), fault))?;
+            for [change, energy] in changes {
+                all = [all[0].max(change), all[1] + energy];
+            }
         }
         Ok(all)
     }

@@ -177,7 +177,7 @@ pub const COLUMNS: &[ColumnDoc] = &[
     doc(
         "energy.adjusted",
         "energy",
-        "energy put in since the start by what changes in contact itself: multipliers, and penalties, which take up all that a step over which they change leaves out of balance",
+        "energy put in since the start by what changes in contact itself: multipliers, and penalties, which take up all that a step over which they change leaves out of balance; and by elements that are pressed and take other strains for that",
     ),
     doc(
         "energy.imbalance",

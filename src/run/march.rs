@@ -220,6 +220,7 @@ impl March<'_, '_> {
                         errors,
                         limit,
                         sticking,
+                        reshaped,
                     } = settled.unwrap_or_default();
                     (self.assembler).balance(&trial.u, self.workspace.residual_mut());
                     let residual = self.workspace.residual();
@@ -228,7 +229,7 @@ impl March<'_, '_> {
                         to: (&*trial, end),
                     };
                     let drag = self.assembler.drag(&trial.u, residual);
-                    let work = (self.watch)
+                    let mut work = (self.watch)
                         .work(
                             self.model,
                             self.assembler,
@@ -238,6 +239,7 @@ impl March<'_, '_> {
                         )
                         .map_err(|e| RunError::internal(&e))?
                         .with_sudden(sliding.sudden);
+                    work.adjusted += reshaped;
                     if let Some(moved) = &moved {
                         converged.totals.motion = moved.energy;
                     }
@@ -289,9 +291,11 @@ impl March<'_, '_> {
                         None => walk.before = Some((committed.clone(), dt)),
                     }
                     committed.copy_from(trial);
-                    let flow = (committed.remember(self.model)).map_err(|(body, fault)| {
+                    let left = (committed.remember(self.model)).map_err(|(body, fault)| {
                         RunError::internal(&Fault::Element { body, fault })
                     })?;
+                    converged.totals.internal_energy += left.energy;
+                    work.adjusted += left.energy;
                     let flowed = committed.plastic_work(self.model);
                     converged.totals.internal_energy -= flowed.in_energy;
                     converged.totals.plastic_work = flowed.done;
@@ -308,8 +312,8 @@ impl March<'_, '_> {
                         }
                     }
                     let turns = walk.stepping.at_kink(start);
-                    let lag = (self.watch).flowed(flow, &work, turns);
-                    walk.stepping.flowed(dt, flow.most, lag);
+                    let lag = (self.watch).flowed(left.flow, &work, turns);
+                    walk.stepping.flowed(dt, left.flow.most, lag);
                     let aside = self.headed(&walk.before, (committed, start, end), turns)?;
                     walk.stepping.headed(dt, aside);
                     if let Some(jump) = passing.filter(|_| walk.jump.is_none()) {

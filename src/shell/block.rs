@@ -1,7 +1,7 @@
 //! The elements of a body, whatever their shape: one trait for the loops, one enum for the body.
 use super::error::{ElementFault, ShellError};
 use super::h8::{Formulation, H8Block, H8System};
-use super::history::{Flow, PlasticWork};
+use super::history::{PlasticWork, Remembered};
 use super::material::{DashpotState, Law, LawState, Memory};
 use super::nurbs::{self, NurbsBlock, NurbsSystem};
 use super::q18::{DOFS, Q18Block, Q18System};
@@ -18,10 +18,7 @@ pub const STATES: usize = 5;
 pub const fn bytes_per_element(element: Element, memory: Memory) -> [usize; 2] {
     let (shape, state) = match Formulation::of(element, memory.flows()) {
         None if matches!(element, Element::Nurbs) => return [NurbsBlock::BYTES, 0],
-        Some(formulation) => (
-            H8Block::BYTES,
-            formulation.state_len(memory.symmetric) + formulation.points() * memory.numbers,
-        ),
+        Some(formulation) => (H8Block::BYTES, formulation.numbers(memory)),
         None => (Q18Block::BYTES, Q18Block::STATE_LEN + 18 * memory.numbers),
     };
     [shape, STATES * 8 * state]
@@ -45,12 +42,17 @@ pub trait ElementBlock<const N: usize>: Sync {
     fn state_len(&self) -> usize;
     /// Numbers of enhanced strains per element, at the start of its state.
     fn alpha_len(&self) -> usize;
-    /// Numbers that the law remembers per element, at the end of its state.
+    /// Numbers that an element remembers of accepted steps, at the end of its state.
     fn history_len(&self) -> usize;
     /// Sets the states of the law to those of an element that nothing has happened to; see [`H8Block::start`].
     fn start(&self, _e: usize, _state: &mut [f64]) {}
-    /// Takes an accepted step into the states of the law; see [`H8Block::remember`].
-    fn remember(&self, e: usize, u: &[Vec3; N], state: &mut [f64]) -> Result<Flow, ElementFault>;
+    /// Takes an accepted step into what elements remember; see [`H8Block::remember`].
+    fn remember(
+        &self,
+        e: usize,
+        u: &[Vec3; N],
+        state: &mut [f64],
+    ) -> Result<Remembered, ElementFault>;
     /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
     fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; N];
     /// What flow has taken of the work on element `e`.
@@ -159,7 +161,7 @@ macro_rules! delegate {
             e: usize,
             u: &[Vec3; $n],
             state: &mut [f64],
-        ) -> Result<Flow, ElementFault> {
+        ) -> Result<Remembered, ElementFault> {
             self.remember(e, u, state)
         }
         fn flow_measures(&self, e: usize, state: &[f64]) -> [[f64; 2]; $n] {
@@ -306,8 +308,8 @@ impl ElementBlock<{ nurbs::NODES }> for NurbsBlock {
         _: usize,
         _: &[Vec3; nurbs::NODES],
         _: &mut [f64],
-    ) -> Result<Flow, ElementFault> {
-        Ok(Flow::default())
+    ) -> Result<Remembered, ElementFault> {
+        Ok(Remembered::default())
     }
     fn flow_measures(&self, _: usize, _: &[f64]) -> [[f64; 2]; nurbs::NODES] {
         [[0.0; 2]; nurbs::NODES]
@@ -461,7 +463,7 @@ impl Block {
         with_block!(self, b => ElementBlock::alpha_len(b))
     }
 
-    /// Numbers that the law remembers per element, at the end of its state.
+    /// Numbers that an element remembers of accepted steps, at the end of its state.
     pub fn history_len(&self) -> usize {
         with_block!(self, b => b.history_len())
     }

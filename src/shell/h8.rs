@@ -2,6 +2,7 @@
 mod felt;
 mod flow;
 mod linear;
+mod pressed;
 mod stresses;
 
 use super::error::{ElementFault, FaultCause, ShellError};
@@ -124,6 +125,8 @@ pub struct H8Block {
     law: Law,
     nodes: Vec<[u32; 8]>,
     reference: Vec<Reference>,
+    /// Whether no node lies inside the thickness, and something may press on both faces.
+    pressed: bool,
 }
 
 impl H8Block {
@@ -204,6 +207,7 @@ impl H8Block {
                 law,
                 nodes: chunks.to_vec(),
                 reference,
+                pressed: !mesh.opposite_nodes().contains(&None),
             }),
         }
     }
@@ -228,14 +232,9 @@ impl H8Block {
         self.law
     }
 
-    /// Numbers of state per element: 210 for seven enhanced strains and none without, then those of the law.
+    /// Numbers of state per element: 210 for seven enhanced strains and none without, then those of [`Self::history_len`].
     pub fn state_len(&self) -> usize {
         self.condensation_len() + self.history_len()
-    }
-
-    /// Numbers that the law remembers per element, at the end of its state.
-    pub fn history_len(&self) -> usize {
-        self.formulation.points() * self.law.state_len()
     }
 
     /// Enhanced strains and the condensation cache.
@@ -300,16 +299,16 @@ impl H8Block {
     ) -> Result<(), ElementFault> {
         let u = arrays(u);
         let du = correction.map(arrays);
-        let du = du.as_ref();
+        let (du, shares) = (du.as_ref(), self.shares(state));
         let re = &self.reference[e];
         with_law!(&self.law, law => match self.formulation {
-            Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, du, state, out),
+            Formulation::Eas7 => tangent::evaluate::<_, 7>(law, re, &u, (du, shares), state, out),
             Formulation::Layered if !law.symmetric() => {
                 unsymmetric::evaluate(law, &re.nodes, &u, state, out)
             }
             Formulation::Layered => layered::evaluate(law, &re.nodes, &u, state, out),
-            Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, du, state, out),
-            Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, du, state, out),
+            Formulation::Eas3 => tangent::evaluate::<_, 3>(law, re, &u, (du, shares), state, out),
+            Formulation::Eas0 => tangent::evaluate::<_, 0>(law, re, &u, (du, shares), state, out),
             Formulation::Displacement => brick::evaluate(law, re, &u, state, out),
             Formulation::MeanDilatation => mean_dilatation::evaluate(law, re, &u, state, out),
         })
@@ -360,9 +359,9 @@ impl H8Block {
         f: &mut [f64; 24],
     ) -> Result<f64, ElementFault> {
         let u = arrays(u);
-        let re = &self.reference[e];
+        let (re, shares) = (&self.reference[e], self.shares(state));
         with_law!(&self.law, law => match self.formulation {
-            Formulation::Eas7 => residual::<_, 7>(law, re, &u, state, f),
+            Formulation::Eas7 => residual::<_, 7>(law, re, &u, (state, shares), f),
             Formulation::Layered => {
                 let states = &state[self.condensation_len()..];
                 layered::forces(law, &re.nodes, &u, &head(state), states)
@@ -374,8 +373,8 @@ impl H8Block {
                         }
                     })
             }
-            Formulation::Eas3 => residual::<_, 3>(law, re, &u, state, f),
-            Formulation::Eas0 => residual::<_, 0>(law, re, &u, state, f),
+            Formulation::Eas3 => residual::<_, 3>(law, re, &u, (state, shares), f),
+            Formulation::Eas0 => residual::<_, 0>(law, re, &u, (state, shares), f),
             Formulation::Displacement => brick::forces(law, re, &u, state).map(|all| kept(all, f)),
             Formulation::MeanDilatation => {
                 mean_dilatation::forces(law, re, &u, state).map(|all| kept(all, f))
@@ -440,7 +439,7 @@ fn residual<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     u: &[V<f64>; 8],
-    state: &[f64],
+    (state, shares): (&[f64], [f64; 2]),
     f: &mut [f64; 24],
 ) -> Result<f64, (u8, Collapsed)> {
     let (energy, forces, h) = kinematics::forces(
@@ -448,7 +447,7 @@ fn residual<L: MaterialLaw, const NE: usize>(
         re,
         u,
         &head::<NE>(state),
-        &state[tangent::state_len(NE)..],
+        (&state[tangent::state_len(NE)..], shares),
     )?;
     Ok(condensed(energy, (forces, h), state, f))
 }

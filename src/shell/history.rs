@@ -27,6 +27,24 @@ impl Sum for Flow {
     }
 }
 
+/// What the acceptance of a step changes in elements.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Remembered {
+    /// How their material flowed.
+    pub flow: Flow,
+    /// By how much their strain energy changes, since they take other strains from there on (energy).
+    pub energy: f64,
+}
+
+impl Sum for Remembered {
+    fn sum<I: Iterator<Item = Remembered>>(all: I) -> Remembered {
+        all.fold(Remembered::default(), |sum, one| Remembered {
+            flow: [sum.flow, one.flow].into_iter().sum(),
+            energy: sum.energy + one.energy,
+        })
+    }
+}
+
 /// Sets the states of the law at all points of an element to those before anything happens, where its undeformed frame is `frame`.
 pub(super) fn start<L: MaterialLaw>(
     law: &L,
@@ -63,6 +81,26 @@ pub(super) fn advance<L: MaterialLaw>(
         new.write(state);
     }
     Ok(all)
+}
+
+/// Strain energy of an element of 2 x 2 x 2 points, whose metric, strain and volume `at` gives, and the mean of its stress along the
+/// thickness.
+pub(super) fn pressing<L: MaterialLaw>(
+    law: &L,
+    at: impl Fn(usize) -> (Metric, [f64; 6], f64),
+    states: &[f64],
+) -> Result<[f64; 2], (u8, Collapsed)> {
+    let (mut energy, mut along, mut all) = (0.0, 0.0, 0.0);
+    for g in 0..8 {
+        let (metric, strain, volume) = at(g);
+        let (psi, s) = law
+            .stress(&metric, &strain, &state_of::<L>(states, g))
+            .map_err(|c| (g as u8, c))?;
+        energy += psi * volume;
+        along += s[2] * metric.lower[2] * volume;
+        all += volume;
+    }
+    Ok([energy, along / all])
 }
 
 /// [`stress::cauchy`] at a point of an element with the states of its law.

@@ -1,5 +1,6 @@
 //! Tangents of the trilinear element and the strains made of them, generic over the scalar.
 use super::material::{Collapsed, MaterialLaw, state_of};
+use super::pressed;
 use super::reference::{BASE, GP, LINE, PARAMETERS, Reference, TYING, WEIGHT, sign};
 use num_dual::DualNum;
 
@@ -134,12 +135,20 @@ pub(super) fn shear<D: DualNum<f64> + Copy>(big: [&V<f64>; 2], u: [&V<D>; 2]) ->
     dot_plain(u[0], big[1]) + dot_plain(u[1], big[0]) + dot(u[0], u[1])
 }
 
-/// Assumed strains at the eight tying points.
+/// Assumed strains at the eight tying points, less what the edges of a pressed element lean ([`pressed`]).
 #[inline(always)]
-pub(super) fn tying<D: DualNum<f64> + Copy>(big: &Fields<f64>, u: &Fields<D>) -> [D; TYING] {
+pub(super) fn tying<D: DualNum<f64> + Copy>(
+    big: &Fields<f64>,
+    u: &Fields<D>,
+    shares: [f64; 2],
+) -> [D; TYING] {
     let mut e = [D::zero(); TYING];
     for c in 0..4 {
         e[c] = stretch(&big.t[c], &u.t[c]);
+    }
+    if pressed::any(shares) {
+        let shared = pressed::shared(shares, [e[0], e[1], e[2], e[3]], &big.t, &u.t);
+        e[..4].copy_from_slice(&shared);
     }
     for p in 0..2 {
         let (b, d) = (&big.tie23[p], &u.tie23[p]);
@@ -159,8 +168,9 @@ pub(super) fn strains<D: DualNum<f64> + Copy, const NE: usize>(
     big: &Fields<f64>,
     u: &Fields<D>,
     alpha: &[D; NE],
+    shares: [f64; 2],
 ) -> [[D; 6]; 8] {
-    let tied = tying(big, u);
+    let tied = tying(big, u, shares);
     let mut strains = [[D::zero(); 6]; 8];
     for (g, e) in strains.iter_mut().enumerate() {
         let (i, j, k) = (g & 1, (g >> 1) & 1, g >> 2);
@@ -190,19 +200,19 @@ pub(super) fn strains<D: DualNum<f64> + Copy, const NE: usize>(
 }
 
 /// Energy, nodal forces `f` (numbered `3 node + axis`) and enhanced-strain forces `h` of the solid-shell element. `states` are those
-/// of the law at the Gauss points.
+/// of the law at the Gauss points, `shares` what it takes off its thickness strain.
 #[allow(clippy::type_complexity)]
 pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     u: &[V<D>; 8],
     alpha: &[D; NE],
-    states: &[f64],
+    (states, shares): (&[f64], [f64; 2]),
 ) -> Result<(D, [D; 24], [D; NE]), (u8, Collapsed)> {
     let big = Fields::new(&re.nodes);
     let du = Fields::new(u);
     let now = add(&big, &du);
-    let strain = strains(re, &big, &du, alpha);
+    let strain = strains(re, &big, &du, alpha, shares);
     let mut energy = D::zero();
     let mut f = [D::zero(); 24];
     // Forces on the parameters of the strain interpolation.
@@ -245,11 +255,18 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
             }
         }
     }
+    let mut along_t = [0, 1, 2, 3].map(|c| now.t[c].map(|t| t * force[c]));
+    if pressed::any(shares) {
+        let rows = pressed::rows(shares, &now.t);
+        along_t = [0, 1, 2, 3].map(|a| {
+            [0, 1, 2].map(|x| (0..4).fold(D::zero(), |sum, c| sum + rows[c][a][x] * force[c]))
+        });
+    }
     for a in 0..8 {
         let (i, j, c) = (a & 1, (a >> 1) & 1, a & 3);
         let (r, s, t) = (sign(a, 0), sign(a, 1), sign(a, 2));
         for x in 0..3 {
-            f[3 * a + x] += now.t[c][x] * force[c] * (0.5 * t)
+            f[3 * a + x] += along_t[c][x] * (0.5 * t)
                 + (now.tie23[i][1][x] * s + now.tie23[i][0][x] * t) * force[4 + i] * 0.25
                 + (now.tie13[j][1][x] * r + now.tie13[j][0][x] * t) * force[6 + j] * 0.25;
         }

@@ -146,7 +146,7 @@ impl<D: DualNum<f64> + Copy> Strains<D> {
     pub fn new(nodes: &[V<f64>; 8], u: &[V<D>; 8], alpha: &[D; MODES]) -> Self {
         let (geometry, u) = (Geometry::new(nodes), Fields::new(u));
         Strains {
-            tied: tying(&geometry.big, &u),
+            tied: tying(&geometry.big, &u, [0.0; 2]),
             geometry,
             u,
             alpha: *alpha,
@@ -285,7 +285,7 @@ pub(super) fn forces<D: DualNum<f64> + Copy, L: MaterialLaw>(
     let geometry = Geometry::new(nodes);
     let du = Fields::new(u);
     let now = add(&geometry.big, &du);
-    let (tied, tied_rows) = (tying(&geometry.big, &du), TyingRows::new(&now));
+    let (tied, tied_rows) = (tying(&geometry.big, &du, [0.0; 2]), TyingRows::new(&now));
     let (mut energy, mut f, mut h) = (D::zero(), [D::zero(); 24], [D::zero(); MODES]);
     for g in 0..POINTS {
         let place = geometry.at(g);
@@ -323,7 +323,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
     let geometry = Geometry::new(nodes);
     let du = Fields::new(u);
     let now = add(&geometry.big, &du);
-    let tied = tying(&geometry.big, &du);
+    let tied = tying(&geometry.big, &du, [0.0; 2]);
     let mut alpha = [0.0; MODES];
     alpha.copy_from_slice(&state[..MODES]);
     let states = &state[state_len(MODES)..];
@@ -350,7 +350,7 @@ pub(super) fn evaluate<L: MaterialLaw>(
         }
         add_parameters::<MODES, B, P>(&mut sums, q, &column);
     }
-    condense::<MODES, P>(&sums, &now, false, state, out)
+    condense::<MODES, P>(&sums, &now, (false, [0.0; 2]), state, out)
 }
 
 /// Stresses of unit base strains at one point: 33, 23, 13 at the tying points, then the enhanced ones.

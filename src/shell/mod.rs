@@ -26,6 +26,7 @@ mod layered;
 pub mod material;
 mod mean_dilatation;
 mod nurbs;
+mod pressed;
 mod q18;
 mod reference;
 mod stress;
@@ -38,7 +39,7 @@ pub(crate) use block::with_block;
 pub use block::{Block, ElementBlock, ElementSystem, STATES, bytes_per_element};
 pub use error::{ElementFault, FaultCause, ShellError};
 pub use h8::{Formulation, H8Block, H8System};
-pub use history::{Flow, PlasticWork};
+pub use history::{Flow, PlasticWork, Remembered};
 pub use material::{Law, MaterialLaw, Memory, Metric, NeoHooke, Response, StVenantKirchhoff};
 pub use nurbs::{
     AnchorSpring, HeldNormal, NurbsBlock, NurbsSystem, SEAM_DOFS, SEAM_NODES, SeamSpan,

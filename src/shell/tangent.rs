@@ -14,6 +14,7 @@ use super::error::FaultCause;
 use super::h8::H8System;
 use super::kinematics::{Fields, V, add, strains};
 use super::material::{MaterialLaw, state_of};
+use super::pressed;
 use super::reference::{BASE, GP, LINE, PARAMETERS, Reference, TYING, WEIGHT, sign};
 use super::sums::{Column, LANES, Sums, add_membrane, add_parameters};
 
@@ -33,12 +34,13 @@ pub(super) const fn factors(ne: usize) -> usize {
 
 /// Evaluates one element at displacements `u`: `out` receives condensed forces and tangent, `state` (its alpha and
 /// the states of the law being read) the condensation cache. With `correction`, the last change of the displacements, the
-/// geometric part of the tangent has the stresses of mixed integration points ([`quadratic`]).
+/// geometric part of the tangent has the stresses of mixed integration points ([`quadratic`]); `shares` are what is
+/// taken off the thickness strain ([`pressed`]).
 pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
     u: &[V<f64>; 8],
-    correction: Option<&[V<f64>; 8]>,
+    (correction, shares): (Option<&[V<f64>; 8]>, [f64; 2]),
     state: &mut [f64],
     out: &mut H8System,
 ) -> Result<(), FaultCause> {
@@ -47,47 +49,61 @@ pub(super) fn evaluate<L: MaterialLaw, const NE: usize>(
     let now = add(&big, &du);
     let mut alpha = [0.0; NE];
     alpha.copy_from_slice(&state[..NE]);
-    let strain = strains(re, &big, &du, &alpha);
-    let bent = correction.map(|du| quadratic(re, du));
+    let strain = strains(re, &big, &du, &alpha, shares);
+    let bent = correction.map(|du| quadratic(re, du, shares));
     let states = &state[state_len(NE)..];
     let sums = gauss_loop::<L, NE>(law, re, &now, (&strain, bent.as_ref()), states)?;
-    condense::<NE, PARAMETERS>(&sums, &now, bent.is_some(), state, out)
+    condense::<NE, PARAMETERS>(&sums, &now, (bent.is_some(), shares), state, out)
 }
 
 /// Condensed forces and tangent of an element with `NE` enhanced strains from the sums over its points; `carried` says that the
-/// geometric part has stresses of its own. The condensation cache goes into `state`.
+/// geometric part has stresses of its own, `shares` are what is taken off the thickness strain. The condensation cache goes into `state`.
 #[inline(always)]
 pub(super) fn condense<const NE: usize, const P: usize>(
     sums: &Sums<P>,
     now: &Fields<f64>,
-    carried: bool,
+    (carried, shares): (bool, [f64; 2]),
     state: &mut [f64],
     out: &mut H8System,
 ) -> Result<(), FaultCause> {
     let membrane = membrane_blocks(&sums.membrane);
-    let b = tying_rows(now);
+    let mut b = tying_rows(now);
+    let pressed = pressed::any(shares).then(|| {
+        b[0] = [0.0; 24];
+        pressed_rows(now, shares)
+    });
+    let add_pressed = |c: &[f64; P], factor: f64, sum: &mut [f64; 24]| {
+        for (rows, c) in pressed.iter().flatten().zip(c) {
+            for (sum, row) in sum.iter_mut().zip(rows) {
+                *sum += factor * c * row;
+            }
+        }
+    };
 
     // Displacement part: rows of L and of the coupling, forces.
     let mut l = [[0.0; 24]; NE];
     for m in 0..NE {
         l[m] = times_rows(&sums.z[TYING + m], &sums.c[TYING + m], &b, 1.0);
+        add_pressed(&sums.c[TYING + m], 1.0, &mut l[m]);
     }
     let mut y = [[0.0; 24]; TYING];
     for p in 0..TYING {
         y[p] = times_rows(&sums.z[p], &sums.c[p], &b, 0.5);
+        add_pressed(&sums.c[p], 0.5, &mut y[p]);
     }
     let mut force = [0.0; P];
     for p in 0..TYING + NE {
         force[p] = sums.c[p][P - 1];
     }
     let mut f = times_rows(&sums.z[P - 1], &force, &b, 1.0);
+    add_pressed(&force, 1.0, &mut f);
 
     // Half of the coupling plus half of the initial-stress part of the transverse strains; its transpose is the rest.
     let tied = match carried {
         true => sums.carried,
         false => std::array::from_fn(|p| force[p]),
     };
-    let geometric = transverse_geometric(&tied);
+    let geometric = transverse_geometric(&tied, shares);
     let mut half = [[0.0; 24]; 24];
     for (column, half) in half.iter_mut().enumerate() {
         let node = column & 7;
@@ -99,6 +115,11 @@ pub(super) fn condense<const NE: usize, const P: usize>(
         let axis = column >> 3;
         for a in 0..8 {
             half[8 * axis + a] += geometric[node][a];
+        }
+        for (rows, y) in pressed.iter().flatten().zip(&y) {
+            for (half, y) in half.iter_mut().zip(y) {
+                *half += y * rows[column];
+            }
         }
     }
 
@@ -161,9 +182,9 @@ pub(super) fn condense<const NE: usize, const P: usize>(
 /// D taken where the iterate is, that is the stress there less `D : (quadratic part)`. A correction that rotates a thin shell
 /// stretches it in second order: these strains are none of the equilibrium that is sought, and their stresses, orders of
 /// magnitude above it, would spoil the geometric part of the tangent.
-fn quadratic(re: &Reference, du: &[V<f64>; 8]) -> [[f64; 6]; 8] {
+fn quadratic(re: &Reference, du: &[V<f64>; 8], shares: [f64; 2]) -> [[f64; 6]; 8] {
     let none = Fields::new(&[[0.0; 3]; 8]);
-    strains(re, &none, &Fields::new(du), &[])
+    strains(re, &none, &Fields::new(du), &[], shares)
 }
 
 #[inline(always)]
@@ -329,6 +350,18 @@ fn tying_rows(now: &Fields<f64>) -> [[f64; 24]; 3] {
     b
 }
 
+/// Derivatives of the thickness strains at the four corners by all dofs, where something is taken off those of the edges.
+#[cold]
+fn pressed_rows(now: &Fields<f64>, shares: [f64; 2]) -> [[f64; 24]; 4] {
+    let rows = pressed::rows(shares, &now.t);
+    std::array::from_fn(|c| {
+        std::array::from_fn(|dof| {
+            let (axis, a) = (dof >> 3, dof & 7);
+            0.5 * sign(a, 2) * rows[c][a & 3][axis]
+        })
+    })
+}
+
 /// `z + factor c^T b` for one parameter with coefficients `c` on the tying points.
 #[inline(always)]
 fn times_rows<const P: usize>(
@@ -355,9 +388,20 @@ fn times_rows<const P: usize>(
 
 /// Half of the initial-stress stiffness of the transverse strains, a scalar per pair of nodes; its transpose is the rest.
 #[inline(always)]
-pub(super) fn transverse_geometric(force: &[f64; TYING]) -> [[f64; 8]; 8] {
+pub(super) fn transverse_geometric(force: &[f64; TYING], shares: [f64; 2]) -> [[f64; 8]; 8] {
     let mut k = [[0.0; 8]; 8];
-    for c in 0..4 {
+    let (first, own) = match pressed::any(shares) {
+        true => (4, 0),
+        false => (0, 4),
+    };
+    for (a, b) in (0..first).flat_map(|a| (0..4).map(move |b| (a, b))) {
+        let value = 0.125 * pressed::second(shares, force, a, b);
+        k[a][b] += value;
+        k[a + 4][b + 4] += value;
+        k[a][b + 4] -= value;
+        k[a + 4][b] -= value;
+    }
+    for c in 0..own {
         let value = 0.125 * force[c];
         k[c][c] += value;
         k[c + 4][c + 4] += value;

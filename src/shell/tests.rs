@@ -117,11 +117,11 @@ const BEFORE: [f64; 6] = [0.05, -0.02, 0.03, 0.2, 0.1, -0.05];
 fn forces<D: num_dual::DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
-    u: &[V<D>; 8],
+    (u, shares): (&[V<D>; 8], [f64; 2]),
     alpha: &[D; NE],
 ) -> (D, [D; 24], [D; NE]) {
     if NE < layered::MODES {
-        return kinematics::forces(law, re, u, alpha, &unused(law, 8)).unwrap();
+        return kinematics::forces(law, re, u, alpha, (&unused(law, 8), shares)).unwrap();
     }
     let all = std::array::from_fn(|m| alpha[m]);
     let states = unused(law, layered::POINTS);
@@ -133,7 +133,7 @@ fn forces<D: num_dual::DualNum<f64> + Copy, L: MaterialLaw, const NE: usize>(
 fn dual_tangent<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
-    u: &[V<f64>; 8],
+    (u, shares): (&[V<f64>; 8], [f64; 2]),
     alpha: &[f64; NE],
     displacement: bool,
 ) -> Vec<Vec<f64>> {
@@ -150,7 +150,7 @@ fn dual_tangent<L: MaterialLaw, const NE: usize>(
                 let (_, f) = brick::forces(law, re, &ud, &unused(law, 8)).unwrap();
                 f.map(|f| f.eps).to_vec()
             } else {
-                let (_, f, h) = forces(law, re, &ud, &ad);
+                let (_, f, h) = forces(law, re, (&ud, shares), &ad);
                 f.iter().chain(&h).map(|f| f.eps).collect()
             }
         })
@@ -161,7 +161,7 @@ fn dual_tangent<L: MaterialLaw, const NE: usize>(
 fn energy_gradient<L: MaterialLaw, const NE: usize>(
     law: &L,
     re: &Reference,
-    u: &[V<f64>; 8],
+    (u, shares): (&[V<f64>; 8], [f64; 2]),
     alpha: &[f64; NE],
 ) -> (Vec<f64>, Vec<f64>) {
     let mut gradient = vec![];
@@ -173,9 +173,9 @@ fn energy_gradient<L: MaterialLaw, const NE: usize>(
         } else {
             ad[column - 24] = ad[column - 24].derivative();
         }
-        gradient.push(forces(law, re, &ud, &ad).0.eps);
+        gradient.push(forces(law, re, (&ud, shares), &ad).0.eps);
     }
-    let (_, f, h) = forces(law, re, u, alpha);
+    let (_, f, h) = forces(law, re, (u, shares), alpha);
     (gradient, f.iter().chain(&h).copied().collect())
 }
 
@@ -187,7 +187,11 @@ pub(super) fn deformed(size: f64) -> [Vec3; 8] {
     })
 }
 
-fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulation) -> [f64; 3] {
+fn check_element<L: MaterialLaw, const NE: usize>(
+    law: &L,
+    formulation: Formulation,
+    shares: [f64; 2],
+) -> [f64; 3] {
     let displacement = formulation == Formulation::Displacement;
     let x = nodes();
     let (re, _) = Reference::new(x.map(|x| x.data.0[0]));
@@ -204,9 +208,9 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
     } else if NE == layered::MODES {
         layered::evaluate(law, &re.nodes, &ua, &mut state, &mut out).unwrap();
     } else {
-        tangent::evaluate::<_, NE>(law, &re, &ua, None, &mut state, &mut out).unwrap();
+        tangent::evaluate::<_, NE>(law, &re, &ua, (None, shares), &mut state, &mut out).unwrap();
     }
-    let exact = dual_tangent(law, &re, &ua, &alpha, displacement);
+    let exact = dual_tangent(law, &re, (&ua, shares), &alpha, displacement);
 
     // Undo the condensation with the cache: K + L^T D^-1 L, L, D and f + L^T D^-1 h.
     let l = |m: usize, r: usize| state[2 * NE + 24 * m + r];
@@ -259,7 +263,7 @@ fn check_element<L: MaterialLaw, const NE: usize>(law: &L, formulation: Formulat
         let (_, exact) = brick::forces(law, &re, &ua, &unused(law, 8)).unwrap();
         return [tangent_error, relative(&out.f, &exact), 0.0];
     }
-    let (gradient, forces) = energy_gradient(law, &re, &ua, &alpha);
+    let (gradient, forces) = energy_gradient(law, &re, (&ua, shares), &alpha);
     let found: Vec<f64> = f.iter().chain(h.iter()).copied().collect();
     [
         tangent_error,
@@ -273,21 +277,22 @@ fn element_tangent_is_the_derivative_of_its_forces() {
     for law in laws() {
         for formulation in FORMULATIONS {
             macro_rules! all {
-                ($law:expr) => {
+                ($law:expr, $shares:expr) => {
                     match formulation {
-                        Formulation::Eas7 => check_element::<_, 7>($law, formulation),
-                        Formulation::Layered => check_element::<_, 8>($law, formulation),
-                        Formulation::Eas3 => check_element::<_, 3>($law, formulation),
-                        _ => check_element::<_, 0>($law, formulation),
+                        Formulation::Eas7 => check_element::<_, 7>($law, formulation, $shares),
+                        Formulation::Layered => check_element::<_, 8>($law, formulation, $shares),
+                        Formulation::Eas3 => check_element::<_, 3>($law, formulation, $shares),
+                        _ => check_element::<_, 0>($law, formulation, $shares),
                     }
                 };
             }
-            let errors = with_law!(&law, law => all!(law));
-            println!("{formulation:?}: tangent, forces, gradient of the energy {errors:?}");
-            assert!(
-                errors.iter().all(|e| *e < 1e-12),
-                "{law:?} {formulation:?} {errors:?}"
-            );
+            for shares in &[[0.0; 2], [0.4, 0.7]][..1 + usize::from(formulation.may_share())] {
+                let errors = with_law!(&law, law => all!(law, *shares));
+                assert!(
+                    errors.iter().all(|e| *e < 1e-12),
+                    "{law:?} {formulation:?} {shares:?} {errors:?}"
+                );
+            }
         }
     }
 }
@@ -321,7 +326,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
             let mut ud = u.map(|u| u.data.0[0].map(Dual64::from));
             ud[column / 3][column % 3] = ud[column / 3][column % 3].derivative();
             let mut alpha: [Dual64; 7] = std::array::from_fn(|m| Dual64::from(state[m]));
-            let forces = |alpha: &[Dual64; 7]| with_law!(&law, law => kinematics::forces(law, &re, &ud, alpha, &unused(law, 8)).unwrap());
+            let forces = |alpha: &[Dual64; 7]| with_law!(&law, law => kinematics::forces(law, &re, &ud, alpha, (&unused(law, 8), [0.0; 2])).unwrap());
             for _ in 0..2 {
                 let (_, _, h) = forces(&alpha);
                 // D from duals in alpha alone.
@@ -329,7 +334,7 @@ fn condensed_tangent_is_the_derivative_of_condensed_forces() {
                     let mut a = alpha.map(|a| Dual64::from(a.re));
                     a[j] = a[j].derivative();
                     let uf = ud.map(|u| u.map(|u| Dual64::from(u.re)));
-                    with_law!(&law, law => kinematics::forces(law, &re, &uf, &a, &unused(law, 8)).unwrap().2[i].eps)
+                    with_law!(&law, law => kinematics::forces(law, &re, &uf, &a, (&unused(law, 8), [0.0; 2])).unwrap().2[i].eps)
                 });
                 let inverse = d.try_inverse().unwrap();
                 for m in 0..7 {

@@ -83,3 +83,49 @@ fn a_penalty_that_bodies_hardly_feel_is_raised() {
         "{chosen} {stiff}"
     );
 }
+
+/// A thin sheet, .3 thick and of elements of a size, squeezed with friction between the ball and the block.
+fn squeezed(elements: u32, depth: f64, element: &str) -> Value {
+    let contact =
+        |slave: &str, master: &str| json!({"slave": slave, "master": master, "friction": 0.2});
+    let mut scene = pressed(&json!("auto"));
+    let sheet = &mut scene["bodies"]["sheet"];
+    sheet["element"] = json!(element);
+    sheet["mesh"]["plate"]["thickness"] = json!(0.3);
+    sheet["mesh"]["plate"]["elements"] = json!([elements, elements]);
+    sheet["mesh"]["plate"]["origin"] = json!([-5, -5, -0.15]);
+    let n = 5 * elements / 4;
+    scene["bodies"]["block"]["mesh"]["block"] =
+        json!({"min": [-5.5, -5.5, -3.333], "max": [5.5, 5.5, -0.333], "elements": [n, n, 4]});
+    let way = json!({"table": [[0, 0], [1, -depth - 0.2]]});
+    scene["surfaces"]["ball"] = json!({
+        "sphere": {"radius": 3.4, "center": [0.3, -0.4, 3.6]}, "motion": {"translation": [0, 0, way]}
+    });
+    scene["contacts"] =
+        json!({"press": contact("sheet.top", "ball"), "lie": contact("sheet.bottom", "block.top")});
+    scene
+}
+
+/// Elements wider than thick give way in a zigzag under a pressure on both faces, unless they count the height between these; and a penalty
+/// that hardly anybody feels lets a sheet sink into the block, while the energy of contact grows with the penalty at first. A brick
+/// that is stable where it is squeezed, and bends only little here, carries the same.
+#[test]
+fn thin_sheets_carry_what_bricks_carry_when_squeezed() {
+    for (elements, depth) in [(8, 0.4), (12, 0.2)] {
+        let [shell, brick] = ["h8", "h8_mean_dilatation"].map(|element| {
+            let outcome = done(&squeezed(elements, depth, element));
+            let gave_way = |w: &&String| w.contains("enhanced strains");
+            assert_eq!(outcome.summary.warnings.iter().find(gave_way), None);
+            println!(
+                "{element}: {} iterations",
+                outcome.summary.newton_iterations
+            );
+            outcome.at("force.ball.z", 1.0)
+        });
+        println!("{elements}, {depth}: {shell} {brick}");
+        assert!(
+            brick < -3000.0 && (shell / brick - 1.0).abs() < 0.04,
+            "{shell} {brick}"
+        );
+    }
+}

@@ -38,9 +38,10 @@ fn state_of_frictionless_contact_is_a_hint_and_a_flag_per_point() {
         state.bytes(),
         3 * NODES * size_of::<f64>() + points * size_of::<PointState>()
     );
-    // With seven, per element: the parameters, the force on them, their coupling with 24 displacements, their factors.
+    // With seven, per element: the parameters, the force on them, their coupling with 24 displacements, their factors; and what is
+    // taken off the thickness strain along two directions.
     let enhanced = model(&scene("h8"));
-    let per_element = 7 + 7 + 7 * 24 + 28;
+    let per_element = 7 + 7 + 7 * 24 + 28 + 2;
     let with = State::new(&enhanced).bytes();
     assert_eq!(with - state.bytes(), N * N * per_element * size_of::<f64>());
 }

@@ -85,7 +85,11 @@ impl Body {
     fn plastic_strains(&self) -> Vec<f64> {
         let (len, history) = (self.block.state_len(), self.block.history_len());
         (self.committed.chunks(len))
-            .flat_map(|state| state[len - history..].chunks(14).map(|point| point[6]))
+            .flat_map(|state| {
+                state[len - history..]
+                    .chunks_exact(14)
+                    .map(|point| point[6])
+            })
             .collect()
     }
 }

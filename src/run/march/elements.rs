@@ -70,7 +70,7 @@ impl RunState<'_> {
         bodies: &[usize],
     ) -> Result<Option<OtherElements>, RunError> {
         let model = &self.problem.model;
-        let remember = |body: &usize| model.bodies[*body].block.history_len() > 0;
+        let remember = |body: &usize| model.bodies[*body].block.law().state_len() > 0;
         let walk = &self.course.walk;
         if self.progress.steps == 0
             || walk.jump.is_some()

@@ -1,5 +1,6 @@
 //! A step that is solved, before it is accepted: its histories, its fields, and whether its penalties serve.
 mod corners;
+mod pressed;
 
 use super::{March, Outputs, RELIABLE, StepControl};
 use crate::assembly::Totals;
@@ -16,6 +17,7 @@ use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::solve::event::Event;
 use crate::solve::newton::{Converged, RigidLimit, StepFailure, StickLimit};
+use pressed::Pressing;
 
 /// Times that penalties may be raised within a step.
 const RAISES: usize = 6;
@@ -32,6 +34,8 @@ pub(super) struct Settled {
     pub limit: Option<RigidLimit>,
     /// What rigid sticking would change, per pair; empty where it was not measured.
     pub sticking: Vec<StickLimit>,
+    /// By how much the energy of elements changed that took other strains (energy).
+    pub reshaped: f64,
 }
 
 /// What a raise of penalties went out from.
@@ -46,6 +50,8 @@ struct Tried {
     points: Vec<(usize, f64)>,
     /// The raise that led there, where it changed a force by far more than that said; it went out from there itself.
     outran: Option<Box<Tried>>,
+    /// As in [`Settled`].
+    reshaped: f64,
 }
 
 impl Tried {
@@ -122,6 +128,8 @@ impl<'m> March<'_, 'm> {
         let mut tried: Option<Tried> = None;
         // The penalties that the steps before had, and what they came to in this one.
         let mut first: Option<(Vec<f64>, Totals)> = None;
+        let (last, turns) = (walk.stepping.done(end), walk.stepping.at_kink(end));
+        let mut pressing = Pressing::default();
         loop {
             let mut histories = trial.histories.clone();
             let was = (&committed.u[..], start);
@@ -131,10 +139,8 @@ impl<'m> March<'_, 'm> {
                 Err(fault) => return Ok(Err(fault.into())),
             };
             self.gather(outputs, trial, end)?;
-            let last = walk.stepping.done(end);
             let bearings = &outputs.fields.bearings;
             let turned = walk.stepping.at_kink(start);
-            let turns = walk.stepping.at_kink(end);
             let due = self.compliance.is_due(step, bearings, turned)
                 || self.compliance.sticking.is_due()
                 || turns
@@ -148,16 +154,23 @@ impl<'m> March<'_, 'm> {
                 let penalties = &self.assembler.penalties;
                 tried.bound(self.model, limit, (trial, penalties, &converged.totals));
             }
+            let at = (step, end, [turns, last]);
             let Some(fields) = &fields else {
+                let own = (committed, &mut *walk);
+                match self.press(&mut pressing, at, own, (trial, &mut histories), converged)? {
+                    Ok(true) => continue,
+                    Ok(false) => {}
+                    Err(failure) => return Ok(Err(failure)),
+                }
                 let sticking = self.sticking(limit.is_some(), trial, &histories, bearings, end)?;
                 return Ok(Ok(Settled {
                     sliding,
                     errors: Errors::default(),
                     limit,
                     sticking,
+                    reshaped: pressing.reshaped,
                 }));
             };
-            let at = (step, end, [turns, last]);
             let [errors, ruling] = self.errors(outputs, trial, at, limit.as_ref(), converged)?;
             let mut outran = None;
             if let Some(mut tried) = tried.take() {
@@ -192,6 +205,7 @@ impl<'m> March<'_, 'm> {
                     let penalty = kept.map(|i| (i, from.penalties[i], from.errors.sum()));
                     let found = penalty_rule::between_bodies(self.model).then(|| from.errors.sum());
                     let told = (why, found);
+                    pressing.reshaped = from.reshaped;
                     match self.back((step, end), (committed, walk), trial, from, told) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),
@@ -207,7 +221,9 @@ impl<'m> March<'_, 'm> {
             let mut stiffer = self.assembler.penalties.clone();
             let raise = raises > 0 && self.rule.raise(self.model, &ruling, rejected, &mut stiffer);
             let error = ruling.sum();
+            // Elements that hold where they gave way ask for more than could be foreseen.
             if (converged.eased || rejected && !raise)
+                && !pressing.again
                 && let Some(error) = penalty_rule::untenable(self.model, &errors, cuts)
             {
                 return Ok(Err(StepFailure::TooSoft {
@@ -215,6 +231,15 @@ impl<'m> March<'_, 'm> {
                 }));
             }
             if !raise {
+                let own = (committed, &mut *walk);
+                match self.press(&mut pressing, at, own, (trial, &mut histories), converged)? {
+                    Ok(true) => {
+                        outputs.fields.back(fields);
+                        continue;
+                    }
+                    Ok(false) => {}
+                    Err(failure) => return Ok(Err(failure)),
+                }
                 if let Some(first) = &first {
                     self.tell_raised_at_last(first, &converged.totals);
                 }
@@ -225,6 +250,7 @@ impl<'m> March<'_, 'm> {
                     errors,
                     limit,
                     sticking,
+                    reshaped: pressing.reshaped,
                 }));
             }
             raises -= 1;
@@ -248,6 +274,7 @@ impl<'m> March<'_, 'm> {
                 limit: fresh,
                 points,
                 outran,
+                reshaped: pressing.reshaped,
             };
             match (self.attempts(committed, &mut walk.habit, 0)).stiffened(step, end, trial) {
                 Ok(next) => {
@@ -257,6 +284,7 @@ impl<'m> March<'_, 'm> {
                 Err(StepFailure::Interrupted) => return Ok(Err(StepFailure::Interrupted)),
                 Err(failure) => {
                     let why = failure.to_string();
+                    pressing.reshaped = from.reshaped;
                     match self.back((step, end), (committed, walk), trial, from, (&why, None)) {
                         Ok(next) => converged.stiffened(next),
                         Err(failure) => return Ok(Err(failure)),

@@ -1,13 +1,26 @@
 //! Elements whose law remembers: what a step leaves in the states of their points, and what these say.
 use super::{Formulation, H8Block, arrays, fault, head};
 use crate::shell::error::ElementFault;
-use crate::shell::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work, start};
+use crate::shell::history::{
+    Flow, PlasticWork, Remembered, advance, cauchy, measures, plastic_work, start,
+};
 use crate::shell::kinematics::Fields;
 use crate::shell::material::with_law;
 use crate::shell::{layered, stress};
 use covact_geometry::Vec3;
 
 impl H8Block {
+    /// Numbers that an element remembers of accepted steps, at the end of its state: those of the law at its points, then the shares that
+    /// it takes off its thickness strain.
+    pub fn history_len(&self) -> usize {
+        self.law_len() + 2 * usize::from(self.has_shares())
+    }
+
+    /// Those of the law.
+    pub(super) fn law_len(&self) -> usize {
+        self.formulation.points() * self.law.state_len()
+    }
+
     /// Stresses at the lowest and highest points of [`Formulation::Layered`], each with that of the next point inwards.
     pub(super) fn layered_stresses(
         &self,
@@ -67,15 +80,15 @@ impl H8Block {
         }
         let nodes = &self.reference[e].nodes;
         let fields = Fields::new(nodes);
-        let states = &mut state[self.condensation_len()..];
+        let states = &mut state[self.condensation_len()..][..self.law_len()];
         with_law!(&self.law, law => start(law, states, |g| match self.formulation {
             Formulation::Layered => layered::frame(nodes, g),
             _ => fields.at(g),
         }));
     }
 
-    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law; returns how it
-    /// flowed.
+    /// Takes a step that is accepted at displacements `u` and the enhanced strains in `state` into the states of the law and the shares
+    /// that are taken off the thickness strain.
     ///
     /// # Errors
     /// [`ElementFault`] where the strain is impossible.
@@ -84,10 +97,16 @@ impl H8Block {
         e: usize,
         u: &[Vec3; 8],
         state: &mut [f64],
-    ) -> Result<Flow, ElementFault> {
-        if self.law.state_len() == 0 {
-            return Ok(Flow::default());
-        }
+    ) -> Result<Remembered, ElementFault> {
+        let flow = match self.law.state_len() {
+            0 => Flow::default(),
+            _ => self.advance(e, u, state)?,
+        };
+        let [_, energy] = self.press(e, u, state)?;
+        Ok(Remembered { flow, energy })
+    }
+
+    fn advance(&self, e: usize, u: &[Vec3; 8], state: &mut [f64]) -> Result<Flow, ElementFault> {
         let u = arrays(u);
         let re = &self.reference[e];
         let (condensation, states) = state.split_at_mut(self.condensation_len());

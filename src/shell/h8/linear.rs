@@ -36,9 +36,13 @@ impl H8Block {
         }
         let (big, du) = (Fields::new(&re.nodes), Fields::new(&u));
         let strain = match self.formulation {
-            Formulation::Eas7 => kinematics::strains(re, &big, &du, &dual_head::<7>(alpha)),
-            Formulation::Eas3 => kinematics::strains(re, &big, &du, &dual_head::<3>(alpha)),
-            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[]),
+            Formulation::Eas7 => {
+                kinematics::strains(re, &big, &du, &dual_head::<7>(alpha), [0.0; 2])
+            }
+            Formulation::Eas3 => {
+                kinematics::strains(re, &big, &du, &dual_head::<3>(alpha), [0.0; 2])
+            }
+            Formulation::Eas0 => kinematics::strains(re, &big, &du, &[], [0.0; 2]),
             Formulation::MeanDilatation => {
                 mean_dilatation::strains(re, &big, &du).map_err(|(point, c)| fault(e, point, c))?
             }

@@ -68,10 +68,11 @@ impl H8Block {
         (big, du): (&Fields<f64>, &Fields<f64>),
         state: &[f64],
     ) -> Result<[[f64; 6]; 8], (u8, Collapsed)> {
+        let shares = self.shares(state);
         Ok(match self.formulation {
-            Formulation::Eas7 => kinematics::strains(re, big, du, &head::<7>(state)),
-            Formulation::Eas3 => kinematics::strains(re, big, du, &head::<3>(state)),
-            Formulation::Eas0 => kinematics::strains(re, big, du, &[]),
+            Formulation::Eas7 => kinematics::strains(re, big, du, &head::<7>(state), shares),
+            Formulation::Eas3 => kinematics::strains(re, big, du, &head::<3>(state), shares),
+            Formulation::Eas0 => kinematics::strains(re, big, du, &[], shares),
             Formulation::MeanDilatation => return mean_dilatation::strains(re, big, du),
             // Strains of layered elements are taken at other points.
             Formulation::Displacement | Formulation::Layered => {

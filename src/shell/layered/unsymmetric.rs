@@ -56,7 +56,7 @@ fn gather<L: MaterialLaw>(
     let geometry = Geometry::new(nodes);
     let du = Fields::new(u);
     let now = add(&geometry.big, &du);
-    let (tied, tied_rows) = (tying(&geometry.big, &du), TyingRows::new(&now));
+    let (tied, tied_rows) = (tying(&geometry.big, &du, [0.0; 2]), TyingRows::new(&now));
     let mut sums = Sums {
         energy: 0.0,
         force: [0.0; ALL],
@@ -92,7 +92,7 @@ fn gather<L: MaterialLaw>(
             }
         }
     }
-    let half = transverse_geometric(&pressed);
+    let half = transverse_geometric(&pressed, [0.0; 2]);
     for (b, row) in sums.geometric.iter_mut().enumerate() {
         for (a, k) in row.iter_mut().enumerate() {
             *k += half[a][b] + half[b][a];

@@ -12,7 +12,7 @@ mod tangent;
 mod tests;
 
 use super::error::{ElementFault, FaultCause, ShellError};
-use super::history::{Flow, PlasticWork, advance, cauchy, measures, plastic_work, start};
+use super::history::{PlasticWork, Remembered, advance, cauchy, measures, plastic_work, start};
 use super::kinematics::V;
 use super::material::{Collapsed, Law, with_law};
 use super::stress;
@@ -286,13 +286,14 @@ impl Q18Block {
         e: usize,
         u: &[Vec3; 18],
         state: &mut [f64],
-    ) -> Result<Flow, ElementFault> {
+    ) -> Result<Remembered, ElementFault> {
         let (u, re) = (arrays(u), &self.reference[e]);
         let strain = strain::strains(re, &split(&u), &head(state));
         let states = &mut state[tangent::STATE..];
         let at = |g: usize| (re.metric[g], strain[g]);
-        with_law!(&self.law, law => advance(law, at, re.volume.into_iter(), states))
-            .map_err(|(point, c)| fault(e, point, c))
+        let flow = with_law!(&self.law, law => advance(law, at, re.volume.into_iter(), states))
+            .map_err(|(point, c)| fault(e, point, c))?;
+        Ok(Remembered { flow, energy: 0.0 })
     }
 
     /// Equivalent plastic strain, and equivalent stress over yield stress, at the nodes.
