@@ -84,8 +84,9 @@ pub fn draw_effects(scene: &RandomScene) -> Effects {
         slope: decades(rng, -3.0, -1.3),
         rolled: (rng.f64() < 0.2).then(|| [0; 3].map(|_| between(rng, 0.8, 2.5))),
         release: match rng.u32(0..5) {
-            0 => Some(Release::Tools),
-            1 | 2 => Some(Release::Forces),
+            // A body that a sheet lies on has no way back.
+            0 if !two => Some(Release::Tools),
+            0..3 => Some(Release::Forces),
             _ => None,
         }
         .filter(|_| driven && scene.motion.turn == 0.0),

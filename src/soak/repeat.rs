@@ -35,37 +35,41 @@ pub fn repetition(of: &RandomScene, scene: &Value) -> Value {
     scene
 }
 
-/// How far the force on the tool is off at the end of its way, relative to its largest one; with inertia, which makes it swing, its
-/// mean over the run. None: a history says nothing of it.
+/// How far the force on the tool is off where its way turns and at the end of it, where most, relative to its largest one; with
+/// inertia, which makes it swing, its mean over the run. None: a history says nothing of it.
 pub fn off(of: &RandomScene, run: &Table, repeated: &Table) -> Option<f64> {
     let inert = matches!(of.effects.matter, Matter::Inertia { .. });
-    let until = of.effects.released_from(of);
-    let mut squares = 0.0f64;
+    let mut squares = vec![0.0f64; of.motion.path.len().max(1)];
     let mut largest = 0.0f64;
     for axis in ["x", "y", "z"] {
         let column = format!("force.tool.{axis}");
-        let force = |table: &Table| -> Option<(f64, f64)> {
+        let forces = |table: &Table| -> Option<(Vec<f64>, f64)> {
             let (times, forces) = (table.column("time")?, table.column(&column)?);
             let rows = || (times.iter().copied()).zip(forces.iter().copied());
             let most = forces.iter().fold(0.0f64, |most, f| most.max(f.abs()));
-            let at_end = || match until {
-                Some(end) => rows().min_by(|a, b| (a.0 - end).abs().total_cmp(&(b.0 - end).abs())),
-                None => rows().next_back(),
-            };
-            let mut mean = 0.0;
-            for ((t, f), (next, g)) in rows().zip(rows().skip(1)) {
-                mean += 0.5 * (f + g) * (next - t);
+            if inert {
+                let mut mean = 0.0;
+                for ((t, f), (next, g)) in rows().zip(rows().skip(1)) {
+                    mean += 0.5 * (f + g) * (next - t);
+                }
+                return Some((vec![mean / times.last()?], most));
             }
-            let value = if inert {
-                mean / times.last()?
-            } else {
-                at_end()?.1
+            let nearest =
+                |t: f64| rows().min_by(|a, b| (a.0 - t).abs().total_cmp(&(b.0 - t).abs()));
+            // Nothing touches before it sets out.
+            let way = of.motion.path.iter().map(|p| p.0).filter(|t| *t > 0.0);
+            let found: Option<Vec<f64>> = match way.clone().next() {
+                None => rows().next_back().map(|row| vec![row.1]),
+                Some(_) => way.map(|t| nearest(t).map(|row| row.1)).collect(),
             };
-            Some((value, most))
+            Some((found?, most))
         };
-        let [(a, _), (b, most)] = [force(run)?, force(repeated)?];
-        squares += (a - b).powi(2);
+        let [(a, _), (b, most)] = [forces(run)?, forces(repeated)?];
+        for ((sum, a), b) in squares.iter_mut().zip(a).zip(b) {
+            *sum += (a - b).powi(2);
+        }
         largest = largest.max(most);
     }
-    (largest > 0.0).then(|| squares.sqrt() / largest)
+    let apart = squares.into_iter().fold(0.0, f64::max);
+    (largest > 0.0).then(|| apart.sqrt() / largest)
 }
