@@ -8,23 +8,31 @@ use crate::shell::Block;
 
 /// Tells the elements of every body whether anything touches both faces of it: contact, a pressure, a support.
 pub(super) fn tell(model: &mut Model) {
-    let touched = touched(model);
+    let (touched, held) = (touched(model), held(model));
+    let nodes = &model.nodes;
     for body in &mut model.bodies {
         let Block::H8(block) = &mut body.block else {
             continue;
         };
-        let own = &touched[body.first_node as usize..];
+        let first = body.first_node as usize;
         let mut faces = [false; 2];
         for e in 0..block.elements() {
-            for (face, nodes) in faces.iter_mut().zip(block.nodes_of(e).as_chunks::<4>().0) {
-                *face |= nodes.iter().all(|&node| own[node as usize]);
+            let own = block.nodes_of(e).map(|node| node as usize + first);
+            let acts = |k: usize| {
+                let through = nodes[own[k | 4]] - nodes[own[k & 3]];
+                // What holds a node beside that does not press.
+                let along = (0..3).filter(|&axis| through[axis].abs() > 0.5 * through.norm());
+                touched[own[k]] || along.into_iter().any(|axis| held[own[k]][axis])
+            };
+            for (face, first) in faces.iter_mut().zip([0, 4]) {
+                *face |= (first..first + 4).all(acts);
             }
         }
         block.press_both_faces(faces == [true; 2]);
     }
 }
 
-/// Whether something touches the nodes of the model.
+/// Whether contact or a pressure touches the nodes of the model.
 fn touched(model: &Model) -> Vec<bool> {
     let mut touched = vec![false; model.nodes.len()];
     let mut mark = |body: usize, faces: &[Face]| {
@@ -50,12 +58,19 @@ fn touched(model: &Model) -> Vec<bool> {
     {
         touched[node as usize] = true;
     }
+    touched
+}
+
+/// The directions in which supports hold the nodes of the model.
+fn held(model: &Model) -> Vec<[bool; 3]> {
+    let mut held = vec![[false; 3]; model.nodes.len()];
     for prescribed in &model.prescribed {
-        if let Some(node) = touched.get_mut(prescribed.dof as usize / 3) {
-            *node = true;
+        let dof = prescribed.dof as usize;
+        if let Some(node) = held.get_mut(dof / 3) {
+            node[dof % 3] = true;
         }
     }
-    touched
+    held
 }
 
 #[cfg(test)]
@@ -102,5 +117,7 @@ mod tests {
         assert!(!may(1, "loads", pressure("sheet.top")));
         let held = json!({"on": "sheet.bottom", "displacement": {"z": 0}});
         assert!(may(1, "supports", held));
+        let plane_strain = json!({"on": ["sheet.top", "sheet.bottom"], "displacement": {"y": 0}});
+        assert!(!may(1, "supports", plane_strain));
     }
 }
