@@ -267,14 +267,17 @@ impl March<'_, '_> {
                         break 'solved StepFailure::GainedEnergy { part };
                     }
                     if cuts < JUMPS
-                        && (converged.softened || self.model.has_rims())
                         && walk.stepping.large(dt)
                         && passing.is_none()
-                        && self.model.dynamics.is_none()
-                        && let Some(part) = self.watch.jumped(self.model, step, &work, energy)
+                        && let Some(failure) = self.watch.leapt(
+                            self.model,
+                            step,
+                            (&work, energy),
+                            (&span, converged.softened),
+                        )
                     {
                         self.take_back(&penalties);
-                        break 'solved StepFailure::Jumped { part };
+                        break 'solved failure;
                     }
                     let mut gave_way = self.lost_hold(trial, &converged);
                     // What they answer is not taken where others go on from here.
@@ -414,7 +417,7 @@ impl March<'_, '_> {
                 !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
             let part = match (&failure, &walk.before) {
                 (StepFailure::TooLong { part, .. } | StepFailure::Damped { part, .. }, _) => *part,
-                (StepFailure::Jumped { .. }, _) => 0.5,
+                (StepFailure::Jumped { .. } | StepFailure::Faster { .. }, _) => 0.5,
                 // From rest the first increment is proportional to the step: one that moves neighbouring nodes by as much as
                 // their distance is what may be followed.
                 (_, None) => 1.0 / self.workspace.bend,

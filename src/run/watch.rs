@@ -13,6 +13,7 @@
 //! What is then left of the balance is the error of the rule, of second order in the step, or a jump of the path.
 mod eased;
 mod faint;
+mod faster;
 mod heading;
 mod jump;
 mod lag;
@@ -25,11 +26,11 @@ mod twist;
 use crate::assembly::{Assembler, Fault, SurfaceForce, Totals};
 use crate::contact::law::PairLaw;
 use crate::model::Model;
-use crate::model::error::number;
 use crate::model::state::State;
 use crate::run::checkpoint::bytes::{Malformed, Reader, Writer};
 use crate::shell::Flow;
 use faint::faint;
+use faster::Faster;
 use heading::Heading;
 pub use jump::Jump;
 use twist::Twist;
@@ -40,8 +41,6 @@ const JUMP: f64 = 0.01;
 const OTHER: f64 = 1e-3;
 /// Part of the work turned over so far that was there before a step, below which it is one of first touches, whose trapezoid is coarse.
 const FIRST: f64 = 0.5;
-/// Multiple of the speed of the last step above which such a step is told.
-const FASTER: f64 = 10.0;
 /// Share of the work turned over above which the sum of all steps is told.
 const DRIFT: f64 = 0.05;
 
@@ -355,10 +354,7 @@ impl Watch {
         let loads = self.loads.len();
         (self.loads).copy_from_slice(&assembler.external()[..loads]);
         self.surfaces.copy_from_slice(&totals.surfaces);
-        let (was, now) = (&span.from.0.u[..n], &span.to.0.u[..n]);
-        let moved = was.iter().zip(now).map(|(a, b)| (b - a).abs());
-        let speed = moved.fold(0.0, f64::max) / (span.to.1 - span.from.1);
-        self.speed = [speed, self.speed[0]];
+        self.speed = [faster::speed(span, n), self.speed[0]];
         self.penalties.copy_from_slice(&assembler.penalties);
         self.ratios.copy_from_slice(&assembler.ratios);
         self.keep_tractions(assembler.answers());
@@ -450,25 +446,8 @@ impl Watch {
         if softened && !first && lost > 0.0 && part > JUMP && slides(model) {
             return Some((Jump { lost, part }.rubbed(model, (step, [from, to])), true));
         }
-        let [speed, last] = self.speed;
-        if !softened || last <= 0.0 || speed <= FASTER * last {
-            return None;
-        }
-        // What is prescribed may go that much faster itself.
-        let pace = model.quickened(last_span, [from, to]).max(1.0);
-        (speed > FASTER * pace * last).then(|| {
-            let prescribed = match pace > 1.0 {
-                true => format!(", and what is prescribed {pace:.1} times as fast"),
-                false => String::new(),
-            };
-            let text = format!(
-                "step {step} (time {}) was solved from a softened penalty only, and moved {:.0} times as fast as the step \
-                 before{prescribed}: it may have come to another equilibrium. Take smaller steps",
-                number(to),
-                speed / last
-            );
-            (text, true)
-        })
+        let faster = Faster::of(model, self.speed, [last_span, [from, to]]);
+        (faster.filter(|_| softened)).map(|faster| (faster.told((step, to)), true))
     }
 
     /// Sum of the sizes of all works so far, whatever their signs (energy).

@@ -101,6 +101,14 @@ pub enum StepFailure {
         /// Energy lost over the work so far.
         part: f64,
     },
+    /// The step was solved from a softened penalty only, and may have come to another equilibrium.
+    #[error(
+        "solved from a softened penalty only, it moved {times:.0} times as fast as the step before"
+    )]
+    Faster {
+        /// Its speed over that of the step before.
+        times: f64,
+    },
     /// The step is too long for its motion.
     #[error(
         "the time integration errs by {error:.1e} of the largest displacement within the step, more than {allowed:.1e}"

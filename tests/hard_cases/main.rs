@@ -25,6 +25,7 @@ mod resume_small;
 mod rollback;
 mod seen;
 mod simulation;
+mod snaps;
 mod soak;
 mod stabilization;
 mod substitutes;
