@@ -239,7 +239,7 @@ impl March<'_, '_> {
                         )
                         .map_err(|e| RunError::internal(&e))?
                         .with_sudden(sliding.sudden);
-                    work.adjusted += reshaped;
+                    work.adjusted += reshaped.energy;
                     if let Some(moved) = &moved {
                         converged.totals.motion = moved.energy;
                     }
@@ -326,6 +326,7 @@ impl March<'_, '_> {
                         walk.before = None;
                     }
                     self.accept(step, end, &converged, work.external);
+                    self.tell_left(step, reshaped.left, converged.totals.internal_energy);
                     let jumped = self.record(
                         outputs,
                         committed,

@@ -152,3 +152,41 @@ fn a_tool_that_would_pass_through_is_caught_by_smaller_steps() {
     let [a, b] = [&outcome, &small].map(|o| o.at("force.ball.z", 1.0));
     assert!(a < -100.0 && (a - b).abs() < 1e-7 * a.abs(), "{a} {b}");
 }
+
+/// A thin sheet that a ball presses on a block: a step that has no equilibrium with all of what presses on the sheet's elements in their
+/// thickness strain is taken with less, and told.
+#[test]
+fn strains_that_do_not_take_what_presses_are_told() {
+    let scene = json!({
+        "covact": 1,
+        "materials": { "rubber": { "neo_hooke": { "E": 105, "nu": 0.3 } } },
+        "bodies": {
+            "base": {
+                "element": "h8_displacement", "material": "rubber",
+                "mesh": { "block": { "min": [-4.6, -5.7, -3.34], "max": [4.6, 5.7, -0.34], "elements": [5, 5, 2] } }
+            },
+            "sheet": {
+                "material": "rubber",
+                "mesh": { "plate": {
+                    "size": [8.32, 10.44], "thickness": 0.248, "elements": [6, 8], "origin": [-4.16, -5.22, -0.124]
+                } }
+            }
+        },
+        "surfaces": { "tool": {
+            "sphere": { "radius": 3.972, "center": [0.937, -0.52, 4.129] },
+            "motion": { "translation": [0, 0, "-0.591*t"] }
+        } },
+        "contacts": {
+            "lie": { "slave": "sheet.bottom", "master": "base.top", "friction": 0.089 },
+            "press": { "slave": "sheet.top", "master": "tool", "points": { "gauss": 2 } }
+        },
+        "supports": {
+            "floor": { "on": "base.bottom", "fixed": true },
+            "ends": { "on": ["sheet.x_min", "sheet.x_max"], "fixed": true }
+        },
+        "loads": { "push": { "on": "sheet.bottom", "pressure": { "table": [[0, 0], [0.3, 0.00097]] } } },
+        "output": { "every": 0 }
+    });
+    let words = "elements that are pressed on both faces could not take all";
+    assert_eq!(warned(&done(&scene), words), 1);
+}

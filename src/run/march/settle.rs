@@ -17,7 +17,7 @@ use crate::run::penalty_rule::{self, PenaltyRule};
 use crate::run::step::Attempts;
 use crate::solve::event::Event;
 use crate::solve::newton::{Converged, RigidLimit, StepFailure, StickLimit};
-use pressed::Pressing;
+use pressed::{Pressing, Reshaped};
 
 /// Times that penalties may be raised within a step.
 const RAISES: usize = 6;
@@ -34,8 +34,7 @@ pub(super) struct Settled {
     pub limit: Option<RigidLimit>,
     /// What rigid sticking would change, per pair; empty where it was not measured.
     pub sticking: Vec<StickLimit>,
-    /// By how much the energy of elements changed that took other strains (energy).
-    pub reshaped: f64,
+    pub reshaped: Reshaped,
 }
 
 /// What a raise of penalties went out from.
@@ -50,8 +49,7 @@ struct Tried {
     points: Vec<(usize, f64)>,
     /// The raise that led there, where it changed a force by far more than that said; it went out from there itself.
     outran: Option<Box<Tried>>,
-    /// As in [`Settled`].
-    reshaped: f64,
+    reshaped: Reshaped,
 }
 
 impl Tried {

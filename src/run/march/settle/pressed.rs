@@ -10,6 +10,10 @@ use crate::solve::newton::{Converged, StepFailure};
 const SOLVED_AGAIN: usize = 12;
 /// Change of the shares that elements take off their thickness strain which is left to the next step, and where nothing comes after.
 const LEFT: [f64; 2] = [1e-3, 1e-6];
+/// Part of the strain energy by which elements would still change theirs from which on it is told: forces are off by about as much.
+const TOLD: f64 = 1e-2;
+const NOT_PRESSED: &str = "elements that are pressed on both faces could not take all of what presses on them into their thickness strain, \
+                           and may give way: a smaller step may do it, and elements of `h8_mean_dilatation` need none";
 
 /// What was done for elements that are pressed in a step.
 #[derive(Default)]
@@ -18,8 +22,16 @@ pub(super) struct Pressing {
     done: bool,
     /// Whether the step was solved again for that.
     pub again: bool,
-    /// By how much the energy of elements changed with their strains (energy).
-    pub reshaped: f64,
+    pub reshaped: Reshaped,
+}
+
+/// What elements came to by taking other strains in a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Reshaped {
+    /// By how much their energy changed (energy).
+    pub energy: f64,
+    /// The same of what was left, since the step had no equilibrium with it (energy).
+    pub left: f64,
 }
 
 impl March<'_, '_> {
@@ -37,13 +49,16 @@ impl March<'_, '_> {
             return Ok(Ok(false));
         }
         let left = LEFT[usize::from(turns_or_ends.contains(&true))];
-        for _ in 0..SOLVED_AGAIN {
+        let mut rounds = 0;
+        loop {
             let mut next = trial.elements.clone();
             let [change, energy] = (trial.press(self.model, &mut next))
                 .map_err(|(body, fault)| RunError::internal(&Fault::Element { body, fault }))?;
-            if change <= left {
+            pressing.reshaped.left = if change > left { energy } else { 0.0 };
+            if change <= left || rounds == SOLVED_AGAIN {
                 break;
             }
+            rounds += 1;
             if !std::mem::replace(&mut pressing.again, true) {
                 std::mem::swap(&mut trial.histories, histories);
             }
@@ -63,8 +78,14 @@ impl March<'_, '_> {
                     break;
                 }
             }
-            pressing.reshaped += energy;
+            pressing.reshaped.energy += energy;
         }
         Ok(Ok(pressing.again))
+    }
+    /// Tells of a step in which elements did not come to the strains of what presses on them.
+    pub(in crate::run::march) fn tell_left(&mut self, step: u32, left: f64, stored: f64) {
+        if left.abs() > TOLD * stored {
+            self.warn_of_step(step, NOT_PRESSED);
+        }
     }
 }
