@@ -239,7 +239,8 @@ class Builders:
         spacing: list of ("uniform" or dict), optional
             Spacing of the nodes along x and y.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -295,7 +296,8 @@ class Builders:
         origin: array of float, optional
             Position of the cylinder's centre; also written `center`.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -351,7 +353,8 @@ class Builders:
         origin: array of float, optional
             Position of the sphere's centre; also written `center`.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -404,7 +407,8 @@ class Builders:
         spacing: list of ("uniform" or dict), optional
             Spacing of the nodes along each axis.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -461,7 +465,8 @@ class Builders:
             Thickness of a surface, in the scene's unit of length: a number, one for each of some element sets of the
             file, or an expression of the place.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -517,7 +522,8 @@ class Builders:
         size: float, optional
             Longest side of an element (length).
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional
@@ -552,7 +558,8 @@ class Builders:
         mesh: Mesh
             The mesh.
         element: "h8", "h8_displacement", "h8_mean_dilatation", "h8_eas3", "q18", optional
-            Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+            Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its
+            elements are long; not of a body of kind `nurbs`, which has its own.
         placement: dict, optional
             Where the mesh is put: first scaled, then rotated about the origin, then moved.
         sets: dict, optional

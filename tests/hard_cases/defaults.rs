@@ -211,13 +211,15 @@ fn squeezed_elements_are_replaced_and_told() {
     );
 }
 
-/// A ball pressed into a block of rubber of `n` elements through its depth.
+/// A ball pressed into a thick plate of rubber of `n` elements through its depth.
 fn ball_in_rubber(n: u32, element: Option<&str>, friction: f64) -> Value {
     let mut scene = json!({
         "covact": 1,
         "materials": { "rubber": { "neo_hooke": { "E": 4, "nu": 0.46 } } },
         "bodies": { "block": {
-            "mesh": { "block": { "min": [-5, -5, -5], "max": [5, 5, 0], "elements": [2 * n, 2 * n, n] } },
+            "mesh": { "plate": {
+                "size": [10, 10], "thickness": 5, "elements": [2 * n, 2 * n], "layers": n, "origin": [-5, -5, -2.5]
+            } },
             "material": "rubber"
         } },
         "surfaces": { "ball": {
@@ -258,6 +260,19 @@ fn a_ball_pressed_into_rubber_has_its_force() {
     println!("{}", force(&named));
     assert!((force(&named) / -38.2).abs() < 0.5);
     assert!(told(&named, "lose their hold where they are squeezed"));
+}
+
+/// The same mesh as a `block`, which is no shell: it has these bricks from the start, the same force, and nothing to tell of elements.
+#[test]
+fn a_block_of_rubber_holds_without_other_elements() {
+    let mut scene = ball_in_rubber(6, None, 0.0);
+    scene["bodies"]["block"]["mesh"] =
+        json!({ "block": { "min": [-5, -5, -5], "max": [5, 5, 0], "elements": [12, 12, 6] } });
+    let run = done(&scene);
+    let force = run.at("force.ball.z", 1.0);
+    println!("{force}");
+    assert!((force / -38.2 - 1.0).abs() < 0.05);
+    assert!(!told(&run, "elements"), "{:?}", run.summary.warnings);
 }
 
 /// The same with friction, where the sign of a determinant is all that is known of the tangent: two shapes that give way at once

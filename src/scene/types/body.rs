@@ -47,7 +47,8 @@ struct BodyForm {
     nurbs: Option<NurbsSurface>,
     /// Name of the material.
     material: String,
-    /// Element formulation, by default `h8`; not of a body of kind `nurbs`, which has its own.
+    /// Element formulation, by default `h8`, and `h8_mean_dilatation` for a `block` that is as thick as four of its elements are long; not
+    /// of a body of kind `nurbs`, which has its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     element: Option<Element>,
     /// Where the mesh is put: first scaled, then rotated about the origin, then moved.
@@ -73,7 +74,10 @@ impl TryFrom<BodyForm> for Body {
     type Error = &'static str;
     fn try_from(form: BodyForm) -> Result<Body, &'static str> {
         let (mesh, element) = match (form.mesh, form.nurbs) {
-            (Some(mesh), None) => (mesh, form.element.unwrap_or_default()),
+            (Some(mesh), None) => {
+                let element = (form.element).unwrap_or_else(|| Element::by_default(&mesh));
+                (mesh, element)
+            }
             (None, Some(_)) if form.element.is_some() => {
                 return Err("a body of kind `nurbs` has elements of its own: leave `element` out");
             }
@@ -136,7 +140,27 @@ pub enum Element {
     Nurbs,
 }
 
+/// Elements, by their longest edge and mean lengths along each axis, that have to fit into a block for it to be a solid and no shell: bricks
+/// then bend within a hundredth of solid-shells.
+const SOLID: f64 = 4.0;
+
 impl Element {
+    /// The element of a mesh for which none is named: solid-shells, and for a block that is no shell bricks, which hold where these
+    /// give way under compression.
+    pub fn by_default(mesh: &MeshSource) -> Element {
+        let MeshSource::Block(block) = mesh else {
+            return Element::H8;
+        };
+        let sizes = [0, 1, 2].map(|i| block.max[i] - block.min[i]);
+        let lengths = [0, 1, 2].map(|i| sizes[i] / f64::from(block.elements[i]));
+        let thickness = sizes.into_iter().fold(f64::INFINITY, f64::min);
+        // Rounding: 0.8 is four times 0.2.
+        match thickness >= (SOLID - 1e-9) * lengths.into_iter().fold(0.0, f64::max) {
+            true => Element::H8MeanDilatation,
+            false => Element::H8,
+        }
+    }
+
     /// Those of meshes, in the order in which they are told.
     pub const OF_MESHES: [Element; 5] = [
         Element::H8,
@@ -224,4 +248,42 @@ pub enum Selection {
         /// Largest angle (degrees).
         angle: f64,
     },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// The element of a block of these sizes and numbers of elements.
+    fn of(size: [f64; 3], elements: [u32; 3]) -> Element {
+        let block = json!({ "block": { "size": size, "elements": elements } });
+        let body = json!({ "mesh": block, "material": "rubber" });
+        serde_json::from_value::<Body>(body).unwrap().element
+    }
+
+    /// Four elements as long as they are high fit into a solid; three do not, nor do long ones, nor does one layer of a sheet.
+    #[test]
+    fn a_block_that_is_no_shell_has_bricks() {
+        assert_eq!(of([2.0, 1.0, 0.8], [10, 5, 4]), Element::H8MeanDilatation);
+        for (size, elements) in [
+            ([2.0, 1.0, 0.6], [10, 5, 3]),
+            ([2.0, 1.0, 0.8], [9, 5, 4]),
+            ([2.0, 1.0, 0.8], [10, 1, 4]),
+            ([20.0, 10.0, 1.0], [20, 10, 1]),
+        ] {
+            assert_eq!(of(size, elements), Element::H8, "{size:?} {elements:?}");
+        }
+        let plate =
+            json!({ "plate": { "size": [1, 1], "thickness": 1, "elements": [4, 4], "layers": 4 } });
+        let body = |element: serde_json::Value| {
+            let mut body = json!({ "mesh": plate, "material": "rubber" });
+            if !element.is_null() {
+                body["element"] = element;
+            }
+            serde_json::from_value::<Body>(body).unwrap().element
+        };
+        assert_eq!(body(serde_json::Value::Null), Element::H8);
+        assert_eq!(body(json!("q18")), Element::Q18);
+    }
 }

@@ -26,10 +26,11 @@ impl From<Vec<[f64; 2]>> for Value {
 impl Body {
     /// A body of default elements.
     pub fn new(mesh: impl Into<MeshSource>, material: impl Into<String>) -> Self {
+        let mesh = mesh.into();
         Body {
-            mesh: mesh.into(),
+            element: Element::by_default(&mesh),
+            mesh,
             material: material.into(),
-            element: Element::default(),
             placement: Placement::default(),
             sets: Default::default(),
             velocity: None,
