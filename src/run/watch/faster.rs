@@ -68,9 +68,13 @@ impl Watch {
         if let Some(part) = self.jumped(model, step, work, energy) {
             return Some(StepFailure::Jumped { part });
         }
+        if !softened {
+            return None;
+        }
         let speeds = [speed(span, self.reactions.len()), self.speed[0]];
-        let faster = Faster::of(model, speeds, [self.span, [span.from.1, span.to.1]]);
-        let Faster { times, .. } = faster.filter(|_| softened)?;
-        Some(StepFailure::Faster { times })
+        let faster = Faster::of(model, speeds, [self.span, [span.from.1, span.to.1]])?;
+        Some(StepFailure::Faster {
+            times: faster.times,
+        })
     }
 }

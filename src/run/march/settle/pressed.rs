@@ -49,16 +49,14 @@ impl March<'_, '_> {
             return Ok(Ok(false));
         }
         let left = LEFT[usize::from(turns_or_ends.contains(&true))];
-        let mut rounds = 0;
-        loop {
+        for round in 0..=SOLVED_AGAIN {
             let mut next = trial.elements.clone();
             let [change, energy] = (trial.press(self.model, &mut next))
                 .map_err(|(body, fault)| RunError::internal(&Fault::Element { body, fault }))?;
             pressing.reshaped.left = if change > left { energy } else { 0.0 };
-            if change <= left || rounds == SOLVED_AGAIN {
+            if change <= left || round == SOLVED_AGAIN {
                 break;
             }
-            rounds += 1;
             if !std::mem::replace(&mut pressing.again, true) {
                 std::mem::swap(&mut trial.histories, histories);
             }
@@ -82,6 +80,7 @@ impl March<'_, '_> {
         }
         Ok(Ok(pressing.again))
     }
+
     /// Tells of a step in which elements did not come to the strains of what presses on them.
     pub(in crate::run::march) fn tell_left(&mut self, step: u32, left: f64, stored: f64) {
         if left.abs() > TOLD * stored {
