@@ -1,5 +1,6 @@
 //! The march through time: one accepted step after another, with cuts, retries and roll-back inside.
 mod accepted;
+mod astray;
 mod elements;
 mod ending;
 mod giving_up;
@@ -57,12 +58,6 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
-/// Cuts of a step after which one that was solved from a softened penalty only is taken where its energies tell of a jump, and told: a
-/// large step may have come to another equilibrium than the one on its path. What snaps does so in smaller steps, too. Where
-/// edges of rigid surfaces are slaves every step that jumps is cut: a slave that catches on an edge in a large step slides over it in
-/// small ones.
-const JUMPS: u32 = 2;
-
 /// What a caller lends to a run while it goes on.
 pub(super) struct Caller<'a> {
     pub observer: &'a mut (dyn Observer + Send),
@@ -193,6 +188,12 @@ impl March<'_, '_> {
             {
                 result = Err(failure);
             }
+            if let Ok(converged) = &mut result
+                && let Err(failure) =
+                    self.stabler((step, end, cuts), (&*committed, walk), trial, converged)
+            {
+                result = Err(failure);
+            }
             let mut moved = match result.is_ok() {
                 true => self.moved(committed, trial),
                 false => None,
@@ -266,15 +267,9 @@ impl March<'_, '_> {
                         self.take_back(&penalties);
                         break 'solved StepFailure::GainedEnergy { part };
                     }
-                    if cuts < JUMPS
-                        && walk.stepping.large(dt)
-                        && passing.is_none()
-                        && let Some(failure) = self.watch.leapt(
-                            self.model,
-                            step,
-                            (&work, energy),
-                            (&span, converged.softened),
-                        )
+                    let large = walk.stepping.large(dt) && passing.is_none();
+                    if let Some(failure) =
+                        self.astray((step, cuts, large), (&work, energy), (&span, &converged))
                     {
                         self.take_back(&penalties);
                         break 'solved failure;
@@ -418,7 +413,7 @@ impl March<'_, '_> {
                 !lost.is_empty() || cuts >= hold::HOPELESS && turned.is_some_and(squeezed);
             let part = match (&failure, &walk.before) {
                 (StepFailure::TooLong { part, .. } | StepFailure::Damped { part, .. }, _) => *part,
-                (StepFailure::Jumped { .. } | StepFailure::Faster { .. }, _) => 0.5,
+                (failure, _) if failure.halves() => 0.5,
                 // From rest the first increment is proportional to the step: one that moves neighbouring nodes by as much as
                 // their distance is what may be followed.
                 (_, None) => 1.0 / self.workspace.bend,

@@ -20,6 +20,7 @@
 //! Where the last stages fail and the run may choose the penalties, the last stage that was solved is what the step gets:
 //! whether its penalties serve is measured by [`super::penalty_rule`]. What fails all four is cut.
 mod augmenting;
+mod buckled;
 mod continuing;
 mod softened;
 mod starts;
@@ -38,7 +39,7 @@ use crate::model::driven::press::{Placed, Presser};
 use crate::model::state::State;
 use crate::scene;
 use crate::solve::event::{Event, Observer};
-use crate::solve::newton::{Converged, First, Newton, Patience, StepFailure, Workspace};
+use crate::solve::newton::{Converged, First, Patience, StepFailure, Workspace};
 use crate::solve::place;
 use crate::system::linear::LinearSolver;
 use nalgebra::Vector6;
@@ -73,6 +74,8 @@ pub(super) struct Attempts<'a, 'm> {
     pub mixed: bool,
     /// Whether most of the last ones had them.
     pub was_mixed: bool,
+    /// Whether the next Newton iterations start beside the state that was solved for, where its energy is lower.
+    pub departs: bool,
 }
 
 impl Attempts<'_, '_> {
@@ -422,32 +425,25 @@ impl Attempts<'_, '_> {
         patience: Patience,
     ) -> Result<Converged, StepFailure> {
         let first = self.first.take();
-        let mut newton = Newton {
-            model: self.model,
-            assembler: self.assembler,
-            solver: self.solver,
-            workspace: self.workspace,
-            settings: self.settings,
-            patience,
-            first: first.unwrap_or_default(),
-            mixed: self.mixed && self.settings.mixed,
-            mixed_iterations: 0,
-            opened: false,
-            ping_pongs: 0,
-            phases: self.phases,
-            interrupt: self.interrupt,
-            iterations: 0,
-        };
-        let mut result = match self.model.small {
-            None => newton.solve(step, end, trial, self.observer),
-            Some(_) => newton.solve_small(step, end, trial, self.observer),
-        };
-        if first.is_some() {
-            self.opened = newton.opened;
+        let departs = std::mem::take(&mut self.departs);
+        let small = self.model.small.is_some();
+        let committed = &self.committed.u;
+        let (mut newton, observer) = self.method(patience, first.unwrap_or_default());
+        if departs {
+            newton.depart(trial, committed, end)?;
         }
-        self.was_mixed = 2 * newton.mixed_iterations > newton.iterations;
-        self.progress.ping_pongs += newton.ping_pongs;
-        self.progress.iterations += u64::from(newton.iterations);
+        let mut result = match small {
+            false => newton.solve(step, end, trial, observer),
+            true => newton.solve_small(step, end, trial, observer),
+        };
+        let (opened, iterations) = (newton.opened, newton.iterations);
+        let (mixed, ping_pongs) = (newton.mixed_iterations, newton.ping_pongs);
+        if first.is_some() {
+            self.opened = opened;
+        }
+        self.was_mixed = 2 * mixed > iterations;
+        self.progress.ping_pongs += ping_pongs;
+        self.progress.iterations += u64::from(iterations);
         if result.is_ok() && self.model.small.is_none() {
             result = validity::inside_out(self.model, trial).and(result);
         }

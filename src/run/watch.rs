@@ -75,6 +75,8 @@ pub struct Watch {
     pub span: [f64; 2],
     /// A step from a softened penalty jumped in spite of its size: the path snaps, and others will.
     snaps: bool,
+    /// The last accepted step ended with a tangent that had negative pivots.
+    pub unstable: bool,
     /// Reactions and loads, 3 per node of the bodies (force); no loads where the scene has none.
     reactions: Vec<f64>,
     loads: Vec<f64>,
@@ -212,6 +214,7 @@ impl Watch {
             speed,
             span,
             snaps,
+            unstable,
             reactions,
             loads,
             surfaces,
@@ -223,6 +226,7 @@ impl Watch {
             faint: _,
         } = self;
         out.bool(*snaps);
+        out.bool(*unstable);
         out.f64s(&[
             *external, *adjusted, *imbalance, *turnover, *worst, *stored, *gained,
         ]);
@@ -249,6 +253,7 @@ impl Watch {
     pub(super) fn take(model: &Model, from: &mut Reader) -> Result<Self, Malformed> {
         let mut watch = Watch::new(model);
         watch.snaps = from.bool()?;
+        watch.unstable = from.bool()?;
         let mut sums = [0.0; 7];
         from.f64s(&mut sums)?;
         [

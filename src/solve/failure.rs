@@ -109,6 +109,12 @@ pub enum StepFailure {
         /// Its speed over that of the step before.
         times: f64,
     },
+    /// The step began at a stable equilibrium and came to one that may be none.
+    #[error("from a stable equilibrium it came to one where {tangent}, which may be unstable")]
+    Unstable {
+        /// What its tangent is like.
+        tangent: String,
+    },
     /// The step is too long for its motion.
     #[error(
         "the time integration errs by {error:.1e} of the largest displacement within the step, more than {allowed:.1e}"
@@ -245,6 +251,12 @@ impl StepFailure {
             | StepFailure::TooSoft { .. } => true,
             _ => false,
         }
+    }
+
+    /// Whether the step went elsewhere than its path, and is to be halved.
+    pub fn halves(&self) -> bool {
+        use StepFailure::{Faster, Jumped, Unstable};
+        matches!(self, Jumped { .. } | Faster { .. } | Unstable { .. })
     }
 
     /// Whether points of this contact fell through their master.

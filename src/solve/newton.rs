@@ -8,6 +8,7 @@
 //! from one side of that to the other.
 mod advance;
 mod converged;
+mod departure;
 mod headway;
 mod keeping;
 mod line_search;

@@ -80,6 +80,7 @@ impl March<'_, '_> {
         }
         if let Some(last) = converged.factorization {
             let negative = last.negative_pivots;
+            self.watch.unstable = negative > 0;
             if negative > 0 && last.method == Method::Lu {
                 let text =
                     format!("the determinant of the step's last tangent is negative: {UNSTABLE}");

@@ -22,7 +22,7 @@ impl Attempts<'_, '_> {
         trial: &mut State,
         penalties: &[f64],
     ) -> Result<Converged, StepFailure> {
-        let mut iterations = 0;
+        let (mut iterations, mut factorization) = (0, None);
         // The last stage that was solved, where the run may keep its penalties.
         let chooses = penalty_rule::rules_all(self.model);
         let mut kept: Option<(State, Vec<f64>)> = None;
@@ -44,7 +44,10 @@ impl Attempts<'_, '_> {
                 augment::forget(self.model, trial);
             }
             match self.newton(step, end, trial, patience) {
-                Ok(converged) => iterations += converged.iterations,
+                Ok(converged) => {
+                    iterations += converged.iterations;
+                    factorization = converged.factorization.or(factorization);
+                }
                 Err(failure) => return self.eased(step, end, trial, kept, failure, penalties),
             }
             if chooses {
@@ -55,6 +58,7 @@ impl Attempts<'_, '_> {
         match self.converge(step, end, trial, Patience::Long) {
             Ok(mut converged) => {
                 converged.iterations += iterations;
+                converged.factorization = converged.factorization.or(factorization);
                 converged.softened = true;
                 Ok(converged)
             }

@@ -70,7 +70,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     }
 
     /// `-du . residual` at the present trial state.
-    fn slope(&mut self, trial: &mut State, time: f64) -> Result<f64, Fault> {
+    pub(super) fn slope(&mut self, trial: &mut State, time: f64) -> Result<f64, Fault> {
         self.phases.start("line_search");
         let w = &mut *self.workspace;
         let result = self.assembler.residual(trial, time, &mut w.scratch);
@@ -81,7 +81,7 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
     }
 
     /// `trial = base + s du`, element states included.
-    fn apply(&mut self, trial: &mut State, s: f64) {
+    pub(super) fn apply(&mut self, trial: &mut State, s: f64) {
         let w = &*self.workspace;
         for ((u, b), d) in trial.u.iter_mut().zip(&w.base.u).zip(&w.du) {
             *u = b + s * d;

@@ -9,6 +9,7 @@ mod cudss;
 mod device;
 #[cfg(any(feature = "cudss", feature = "mumps"))]
 mod foreign;
+mod inertia;
 mod lu;
 mod metis;
 #[cfg(feature = "mumps")]
@@ -22,6 +23,7 @@ pub use cholesky::DirectSolver;
 pub use device::DeviceFault;
 #[cfg(any(feature = "cudss", feature = "mumps"))]
 pub use foreign::ForeignSolver;
+pub use inertia::negative_pivots;
 pub use lu::LuSolver;
 #[cfg(feature = "mumps")]
 pub use mumps::MumpsOptions;
@@ -276,6 +278,16 @@ pub struct Factorization {
     pub smallest_pivot_ratio: f64,
     /// Where that ratio is; `None` for a system without dofs.
     pub smallest_pivot: Option<DofName>,
+}
+
+impl Factorization {
+    /// What is known of a matrix that is not positive definite.
+    pub fn indefinite(&self) -> String {
+        match self.method {
+            Method::Lu => "the determinant of the tangent is negative".to_owned(),
+            _ => format!("the tangent has {} negative pivot(s)", self.negative_pivots),
+        }
+    }
 }
 
 /// A degree of freedom in the numbering of the system.
