@@ -30,8 +30,8 @@ impl March<'_, '_> {
     }
 
     /// Looks at a step that came from a stable equilibrium to one from which a structure would buckle: a strip that is pressed
-    /// along its length, whatever small force it has to its side. A large one is cut, another one goes on to the stable
-    /// equilibrium beside it; where none is found it stays as it is.
+    /// along its length, whatever small force it has to its side. A large one that came past several such states is cut, another
+    /// one goes on to the stable equilibrium beside it; where none is found it stays as it is.
     ///
     /// # Errors
     /// That it is to be cut, the user stops the run, or the step as it was is no longer found.
@@ -43,10 +43,13 @@ impl March<'_, '_> {
         converged: &mut Converged,
     ) -> Result<(), StepFailure> {
         let statics = self.model.dynamics.is_none() && self.model.small.is_none();
-        if !statics || walk.jump.is_some() || self.watch.unstable {
+        if !statics || walk.jump.is_some() {
             return Ok(());
         }
-        self.count_negative(converged, step == 1 || cuts > 0);
+        self.count_negative(converged, step == 1 || cuts > 0 || self.watch.unstable);
+        if self.watch.unstable {
+            return Ok(());
+        }
         let last =
             |converged: &Converged| converged.factorization.filter(|f| f.negative_pivots > 0);
         let Some(indefinite) = last(converged) else {
@@ -55,7 +58,8 @@ impl March<'_, '_> {
         if !(self.attempts(committed, &mut walk.habit, 0)).buckles(end, trial) {
             return Ok(());
         }
-        if cuts < JUMPS && walk.stepping.large(end - self.progress.time) {
+        let far = indefinite.negative_pivots > 1;
+        if far && cuts < JUMPS && walk.stepping.large(end - self.progress.time) {
             let tangent = indefinite.indefinite();
             return Err(StepFailure::Unstable { tangent });
         }
