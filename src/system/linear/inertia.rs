@@ -47,7 +47,8 @@ mod tests {
     /// Two nodes, held by springs of which two pull; the same with an entry on one side alone.
     #[test]
     fn negative_pivots_are_counted_where_values_are_symmetric() {
-        let pattern = Pattern::new(2, &[[0, 1]]).expect("a pattern");
+        let group: &[u32] = &[0, 1];
+        let pattern = Pattern::new(2, [group].into_iter()).expect("a pattern");
         let mut matrix = SystemMatrix::unsymmetric(Arc::new(pattern));
         let mut map = Vec::new();
         matrix
