@@ -308,12 +308,15 @@ pub(super) fn check(model: &mut Model, scene: &Scene) -> Result<(), ModelError> 
         }
         warnings.extend(without_direction(model, index));
         if let Some(number) = pair.rigid_master() {
-            warnings.extend(too_coarse(
+            if let Some((text, far)) = too_coarse(
                 model,
                 index,
                 &model.surfaces[number],
                 scene.solution.end_time,
-            ));
+            ) {
+                let told = if far { &mut warnings } else { &mut notes };
+                told.push(text);
+            }
             warnings.extend(too_hollow(pair, &model.surfaces[number]));
             if let Some(edges) = SharpEdges::of(&model.surfaces[number]) {
                 let name = &model.surfaces[number].name;
@@ -345,8 +348,19 @@ fn resolved(scene: &Scene, pair: &PairModel) -> bool {
     choice(scene, pair).is_resolved()
 }
 
-/// A warning of slave points that are too far apart for a rigid surface.
-fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel, end: f64) -> Option<String> {
+/// Distance of slave points over the smallest convex radius of a rigid surface up to which it sinks in little between them: a
+/// thirtieth of the radius. And the one from which on forces are off. Strips that are bent by rollers came to 0.1 to 2 % of the forces
+/// of meshes twice as fine at distances from 0.52 to 0.6, a sheet drawn over the edge of a punch to 17 % at 0.9.
+const CLOSE: f64 = 0.5;
+const APART: f64 = 0.75;
+
+/// What to tell of slave points that are far apart for a rigid surface, and whether that is a warning.
+fn too_coarse(
+    model: &Model,
+    index: usize,
+    surface: &SurfaceModel,
+    end: f64,
+) -> Option<(String, bool)> {
     // What is curved ever more towards a tip bears there with the tip, where that is a slave.
     let tips = || SharpEdges::of(surface).is_some_and(|edges| edges.tips > 0);
     if model.pairs.iter().any(|p| p.edges_of == Some(index)) && tips() {
@@ -354,19 +368,27 @@ fn too_coarse(model: &Model, index: usize, surface: &SurfaceModel, end: f64) -> 
     }
     let spacing = point_spacing(model, index);
     let [smallest, _] = surface.radii();
-    let smallest = smallest.filter(|radius| spacing > 0.5 * radius)?;
+    let smallest = smallest.filter(|radius| spacing > CLOSE * radius)?;
     let radius = convex_radius(model, (&model.pairs[index], surface), smallest, end)?;
-    (spacing > 0.5 * radius).then(|| {
-        format!(
-            "contact `{}`: its slave points are {} apart, too coarse for the smallest convex radius {} of surface \
-             `{}`, which will sink in between them: refine the mesh or take more `points` a face (at most {} apart)",
-            model.pairs[index].name,
-            number(spacing),
-            number(radius),
-            surface.name,
-            number(0.5 * radius)
-        )
-    })
+    if spacing <= CLOSE * radius {
+        return None;
+    }
+    let far = spacing > APART * radius;
+    let what = match far {
+        true => "too coarse for",
+        false => "more than half of",
+    };
+    let sinks = if far { "will" } else { "may" };
+    let text = format!(
+        "contact `{}`: its slave points are {} apart, {what} the smallest convex radius {} of surface `{}`, which {sinks} sink in \
+         between them: refine the mesh or take more `points` a face (at most {} apart)",
+        model.pairs[index].name,
+        number(spacing),
+        number(radius),
+        surface.name,
+        number(CLOSE * radius)
+    );
+    Some((text, far))
 }
 
 /// A warning of an offset that a hollow does not leave room for.

@@ -355,6 +355,23 @@ fn slave_points_too_coarse_for_the_tool() {
     );
 }
 
+/// At two thirds of the radius it sinks in by a twentieth of that, which is measured in the run: a note.
+#[test]
+fn slave_points_somewhat_coarse_for_the_tool() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = json!({ "radius": 12, "center": [0, 0, 13] });
+    write_plate(folder.path(), &[("/surfaces/ball/sphere", ball)]);
+    let output = covact(folder.path(), &["check", "scene.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(!stderr(&output).contains("warning"), "{}", stderr(&output));
+    let said: Vec<String> = stdout(&output)
+        .split_whitespace()
+        .map(str::to_owned)
+        .collect();
+    let told = "its slave points are 8 apart, more than half of the smallest convex radius 12";
+    assert!(said.join(" ").contains(told), "{}", stdout(&output));
+}
+
 /// A flat patch above the plate, and far from it a half cylinder, nearly, of a small radius.
 fn flat_and_far() -> String {
     let patch = |entity: u32, degree: u32, points: Vec<[f64; 4]>| {

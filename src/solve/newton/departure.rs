@@ -14,7 +14,7 @@ const VECTORS: usize = 20;
 const NEW: f64 = 1e-8;
 /// Part of an eigenvalue by which it may still be off.
 const SETTLED: f64 = 0.1;
-/// Part of the largest displacement by which neighbouring nodes may move against each other where a structure buckles: a wave of
+/// Part of the largest displacement by which neighbouring nodes may move against each other where a structure buckles: a wave of some
 /// twelve elements does so by half. Shorter ones are those of elements that give way themselves.
 const SMOOTH: f64 = 0.5;
 /// First and largest way along the direction: part of their distance by which it moves neighbouring nodes against each other.
