@@ -89,7 +89,8 @@ impl March<'_, '_> {
         if found && last(converged).is_none() {
             let text = format!(
                 "step {step} (time {}): the equilibrium that was found first is unstable, as that of a column that stays straight; \
-                 the step went on to the stable one beside it",
+                 the step went on to the stable one beside it (to which side, a small load or an imperfection decides; without any it is \
+                 arbitrary)",
                 number(end)
             );
             self.observer.event(&Event::Note { text });
