@@ -58,6 +58,7 @@ use std::sync::atomic::AtomicBool;
 const RELIABLE: f64 = 1e-4;
 /// Cuts of a step after which one that gained energy out of nothing is taken, and told.
 const GIVES_IN: u32 = 4;
+
 /// What a caller lends to a run while it goes on.
 pub(super) struct Caller<'a> {
     pub observer: &'a mut (dyn Observer + Send),

@@ -74,8 +74,9 @@ pub(super) struct Attempts<'a, 'm> {
     pub mixed: bool,
     /// Whether most of the last ones had them.
     pub was_mixed: bool,
-    /// Whether the next Newton iterations start beside the state that was solved for, where its energy is lower.
-    pub departs: bool,
+    /// The next Newton iterations start beside the state that was solved for, where its energy is lower along a direction of this
+    /// stretch.
+    pub departs: Option<f64>,
 }
 
 impl Attempts<'_, '_> {
@@ -427,10 +428,9 @@ impl Attempts<'_, '_> {
         let first = self.first.take();
         let departs = std::mem::take(&mut self.departs);
         let small = self.model.small.is_some();
-        let committed = &self.committed.u;
         let (mut newton, observer) = self.method(patience, first.unwrap_or_default());
-        if departs {
-            newton.depart(trial, committed, end)?;
+        if let Some(stretch) = departs {
+            newton.depart(trial, stretch, end)?;
         }
         let mut result = match small {
             false => newton.solve(step, end, trial, observer),

@@ -52,24 +52,23 @@ impl March<'_, '_> {
         }
         let last =
             |converged: &Converged| converged.factorization.filter(|f| f.negative_pivots > 0);
-        let Some(indefinite) = last(converged) else {
-            return Ok(());
-        };
-        if !(self.attempts(committed, &mut walk.habit, 0)).buckles(end, trial) {
-            return Ok(());
-        }
-        let far = indefinite.negative_pivots > 1;
-        if far && cuts < JUMPS && walk.stepping.large(end - self.progress.time) {
-            let tangent = indefinite.indefinite();
-            return Err(StepFailure::Unstable { tangent });
-        }
         let mut found = false;
         for _ in 0..BRANCHES {
             let Some(before) = last(converged) else {
                 break;
             };
+            let mut attempts = self.attempts(committed, &mut walk.habit, 0);
+            let Some(stretch) = attempts.buckles(end, trial) else {
+                break;
+            };
+            let far = !found && before.negative_pivots > 1;
+            if far && cuts < JUMPS && walk.stepping.large(end - self.progress.time) {
+                let tangent = before.indefinite();
+                return Err(StepFailure::Unstable { tangent });
+            }
             let held = trial.clone();
-            match (self.attempts(committed, &mut walk.habit, 0)).departed(step, end, trial) {
+            match (self.attempts(committed, &mut walk.habit, 0)).departed(step, end, trial, stretch)
+            {
                 Ok(mut next) => {
                     self.count_negative(&mut next, true);
                     if last(&next).is_none_or(|f| f.negative_pivots < before.negative_pivots) {

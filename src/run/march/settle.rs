@@ -101,7 +101,7 @@ impl<'m> March<'_, 'm> {
             opened: false,
             mixed: true,
             was_mixed: false,
-            departs: false,
+            departs: None,
         }
     }
 

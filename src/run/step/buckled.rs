@@ -34,21 +34,24 @@ impl<'a, 'm> Attempts<'a, 'm> {
         (newton, self.observer)
     }
 
-    /// Whether a structure would buckle from an equilibrium that it has come to.
-    pub fn buckles(&mut self, end: f64, trial: &mut State) -> bool {
+    /// Looks for a direction in which a structure would buckle from an equilibrium that it has come to: by how much of their distance
+    /// it moves neighbouring nodes against each other.
+    pub fn buckles(&mut self, end: f64, trial: &mut State) -> Option<f64> {
         let committed = &self.committed.u;
         let (mut newton, _) = self.method(Patience::Short, First::default());
-        newton.falling(trial, committed, end).is_some()
+        newton.falling(trial, committed, end)
     }
 
-    /// Solves a step whose equilibrium, `trial`, is unstable again, from where the energy is lower.
+    /// Solves a step whose equilibrium, `trial`, is unstable again, from where the energy is lower along the direction that
+    /// [`Self::buckles`] has just found.
     pub fn departed(
         &mut self,
         step: u32,
         end: f64,
         trial: &mut State,
+        stretch: f64,
     ) -> Result<Converged, StepFailure> {
-        self.departs = true;
+        self.departs = Some(stretch);
         self.first = Some(First {
             search: true,
             ..First::default()

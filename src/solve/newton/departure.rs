@@ -22,21 +22,17 @@ const FIRST: f64 = 1e-5;
 const LARGEST: f64 = 0.5;
 
 impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
-    /// Moves `trial`, an equilibrium that was just solved for, along a direction in which its energy falls, to where it does no
-    /// longer; towards where the state was `before` of both ways.
+    /// Moves `trial`, an equilibrium, along the direction that [`Self::falling`] has just found there, whose stretch this is, to where
+    /// its energy falls no longer.
     ///
     /// # Errors
-    /// There is no such direction.
+    /// It does not fall along it.
     pub fn depart(
         &mut self,
         trial: &mut State,
-        before: &[f64],
+        stretch: f64,
         time: f64,
     ) -> Result<(), StepFailure> {
-        let none = || StepFailure::Unstable {
-            tangent: "no direction was found in which the energy falls".to_owned(),
-        };
-        let stretch = self.falling(trial, before, time).ok_or_else(none)?;
         let (mut s, most) = (FIRST / stretch, LARGEST / stretch);
         let (mut low, mut high) = (None, None);
         while s < most {
@@ -51,7 +47,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
             }
             s *= 2.0;
         }
-        let (a, falls) = low.ok_or_else(none)?;
+        let (a, falls) = low.ok_or_else(|| StepFailure::Unstable {
+            tangent: "the energy falls in no direction".to_owned(),
+        })?;
         let way = match high {
             Some((b, Some(rises))) => a + (b - a) * falls / (falls - rises),
             _ => a,
@@ -60,8 +58,9 @@ impl<S: LinearSolver + ?Sized> Newton<'_, '_, S> {
         Ok(())
     }
 
-    /// A direction of negative curvature at the equilibrium `trial`, into `du`, and by how much of their distance it moves
-    /// neighbouring nodes against each other; nothing where there is none, or elements give way and not the structure.
+    /// A direction of negative curvature at the equilibrium `trial`, into `du`, towards where the state was `before` of both ways;
+    /// and by how much of their distance it moves neighbouring nodes against each other. Nothing where there is none, or elements
+    /// give way and not the structure.
     pub fn falling(&mut self, trial: &mut State, before: &[f64], time: f64) -> Option<f64> {
         self.linearize(trial, time, (false, false)).ok()?;
         self.factorize().ok()?;
