@@ -402,10 +402,11 @@ impl March<'_, '_> {
             let reason = failure.to_string();
             // Elements that another variant would replace are not followed down to the smallest step.
             let turned = hold::turned(self.model, &failure);
-            walk.turned.extend(turned.and_then(number_of));
             let mut lost = self.may_be_replaced(&hold::lost(self.model, committed));
-            // Those of a block give way for themselves; a shell may buckle, and follow in smaller steps.
-            lost.retain(|b| cuts >= hold::SUSPECT || self.model.bodies[*b].is_block());
+            // Those of a block give way for themselves; a shell may buckle, and follow in smaller steps, as it has not before.
+            let again = |b: &usize| cuts >= hold::SUSPECT || walk.turned.contains(b);
+            lost.retain(|b| self.model.bodies[*b].is_block() || again(b));
+            walk.turned.extend(turned.and_then(number_of));
             // What is bent far in a step that is too large turns inside out as well, and is not squeezed when it begins.
             let squeezed = |b: &BodyModel| {
                 self.replaceable.contains(&b.name) && hold::compressed(b, &committed.u)

@@ -35,6 +35,8 @@ pub struct Kept {
     pub(super) progress: Progress,
     pub(super) touched: Vec<bool>,
     pub(super) touching: Vec<bool>,
+    /// Per body.
+    pub(super) turned: Vec<bool>,
     pub(super) watch: Watch,
     pub(super) compliance: Compliance,
     pub(super) rule: PenaltyRule,
@@ -75,11 +77,12 @@ impl Kept {
         let (progress, spent) = from.section("progress", |r| {
             Ok((take_progress(r)?, ResourceUse::take(r)?))
         })?;
-        let (dt, habit, jump, touched, touching) = from.section("path", |r| {
+        let (dt, habit, jump, [touched, touching, turned]) = from.section("path", |r| {
             let pairs = model.pairs.len();
             let (dt, habit, jump) = (r.f64()?, Habit::take(r)?, r.option(Jump::take)?);
-            let [touched, touching] = [take_flags(pairs, r)?, take_flags(pairs, r)?];
-            Ok((dt, habit, jump, touched, touching))
+            let flags = [pairs, pairs, model.bodies.len()].map(|count| take_flags(count, r));
+            let [touched, touching, turned] = flags;
+            Ok((dt, habit, jump, [touched?, touching?, turned?]))
         })?;
         let watch = from.section("watch", |r| Watch::take(model, r))?;
         let (compliance, rule, peaks, travels) = from.section("accuracy", |r| {
@@ -131,6 +134,7 @@ impl Kept {
             progress,
             touched,
             touching,
+            turned,
             watch,
             compliance,
             rule,
@@ -192,8 +196,8 @@ impl RunState<'_> {
             stepping,
             before,
             habit,
-            // Of steps that were cut: a run that goes on finds them anew.
-            turned: _,
+            turned,
+            // A run that goes on finds it anew.
             given_up: _,
             jump,
         } = walk;
@@ -222,6 +226,11 @@ impl RunState<'_> {
                 out.option(jump.as_ref(), |out, jump| jump.put(out));
                 put_flags(touched, out);
                 put_flags(touching, out);
+                let bodies = 0..model.bodies.len();
+                put_flags(
+                    &bodies.map(|b| turned.contains(&b)).collect::<Vec<_>>(),
+                    out,
+                );
             });
             out.section("watch", |out| watch.put(out));
             out.section("accuracy", |out| {

@@ -215,6 +215,7 @@ impl<'m> RunState<'m> {
             progress,
             touched,
             touching,
+            turned,
             watch,
             compliance,
             rule,
@@ -243,6 +244,7 @@ impl<'m> RunState<'m> {
         course.walk.stepping.set_size(dt);
         (course.walk.before, course.walk.habit) = (before, habit);
         course.walk.jump = jump;
+        course.walk.turned = (0..turned.len()).filter(|b| turned[*b]).collect();
         self.assembler.go_on(motion, &committed.u);
         (course.trial, course.committed) = (committed.clone(), committed);
         let (step, time) = (self.progress.steps, self.progress.time);
