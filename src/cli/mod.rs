@@ -242,7 +242,7 @@ struct SoakArgs {
     /// Seconds that a scene may take
     #[arg(long, value_name = "SECONDS", default_value_t = 300)]
     limit: u64,
-    /// Repeat what reaches its end in half of the steps and under ten times the penalty, and compare forces
+    /// Repeat what reaches its end in half of the steps and under ten times the penalty, and on a finer mesh where a warning is of the mesh, and compare forces
     #[arg(long)]
     repeat: bool,
     /// Folder for scenes and results, a folder per seed

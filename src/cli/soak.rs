@@ -49,16 +49,17 @@ pub(super) fn soak(args: &SoakArgs) -> u8 {
         count(&|e| *e == Ending::Hung),
         count(&|e| matches!(e, Ending::Silent(_))),
     ));
-    let repeated = || played.iter().filter_map(|p| Some((p, p.repeated?.off)));
+    let repeated = || played.iter().filter_map(|p| Some((p, p.repeated?)));
     if args.repeat {
         let told = || repeated().filter(|(p, _)| p.warnings > 0);
         report::stderr(&format!(
             "{} were repeated, {} of them off by more than 2 % of their largest force; {} carry a warning, {} of these are off by \
-             more than 1 %\n",
+             more than 1 %, {} where those about the mesh are held against one of half the size\n",
             repeated().count(),
-            repeated().filter(|(_, off)| *off > 0.02).count(),
+            repeated().filter(|(_, r)| r.off > 0.02).count(),
             told().count(),
-            told().filter(|(_, off)| *off > 0.01).count(),
+            told().filter(|(_, r)| r.off > 0.01).count(),
+            told().filter(|(_, r)| r.most() > 0.01).count(),
         ));
     }
     match played.iter().all(|p| p.ending.fair()) {

@@ -85,10 +85,12 @@ pub fn audit(scene: &RandomScene, summary: &Summary, history: &Table) -> Result<
         };
     }
     let pressing = touched.last().is_some_and(|n| *n > 0.0) && largest > 0.0;
-    if scene.motion.pressed && !pressing && !told(&["opened", "passed through"]) {
+    // Metal stays dented where a tool is drawn back over it, and a body with inertia bounces.
+    let returns = matches!(scene.effects.matter, Matter::Elastic | Matter::Face);
+    if scene.motion.pressed && returns && !pressing && !told(&["opened", "passed through"]) {
         return fail("the tool presses at the end, but nothing is in contact".to_owned());
     }
-    if !scene.motion.pressed && touched.iter().all(|n| *n == 0.0) {
+    if !(scene.motion.pressed && returns) && touched.iter().all(|n| *n == 0.0) {
         return fail("the run is done, but there was no contact".to_owned());
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! Runs random scenes, each in a process of its own, so that a crash or a hang is a result.
-use super::{Frame, RandomScene, audit, draw_with_effects, off, repetition};
+use super::repeat::{finer, is_of_mesh, off, repetition};
+use super::{Frame, RandomScene, audit, draw_with_effects};
 use crate::output::{Summary, read_csv};
 use serde::Serialize;
 use serde_json::Value;
@@ -18,7 +19,8 @@ pub struct Settings {
     pub folder: PathBuf,
     /// A run that takes longer hangs.
     pub limit: Duration,
-    /// Whether what reaches its end is repeated in half of the steps and under ten times the penalty.
+    /// Whether what reaches its end is repeated in half of the steps and under ten times the penalty, and on a finer mesh where a
+    /// warning is of the mesh.
     pub repeat: bool,
 }
 
@@ -32,6 +34,15 @@ pub struct Repeated {
     pub off: f64,
     /// Number of warnings of the repetition: with any, it is no judge of a run without.
     pub warnings: usize,
+    /// How far it is off from that on a mesh of half the size; none: no warning is of the mesh, or the finer run did not reach its end.
+    pub on_finer_mesh: Option<f64>,
+}
+
+impl Repeated {
+    /// How far the force is off by what its warnings are of.
+    pub fn most(&self) -> f64 {
+        self.off.max(self.on_finer_mesh.unwrap_or(0.0))
+    }
 }
 
 /// How a random scene ended.
@@ -117,19 +128,36 @@ pub fn play(seed: u64, settings: &Settings) -> io::Result<Played> {
     let warnings = summary.as_ref().map_or(0, |s| s.warnings.len());
     let mut repeated = None;
     if settings.repeat && ending == Ending::Done {
-        let again = repetition(&scene, &written.scene);
-        let (ended, summary) = run(settings, (&folder, ["again.json", "again"]), &again)?;
-        let [first, second] =
-            ["out", "again"].map(|out| read_csv(&folder.join(out).join("history.csv")));
-        if let (Some(true), Some(summary), Ok(first), Ok(second)) =
-            (ended.map(|status| status.success()), summary, first, second)
-        {
-            repeated = off(&scene, &first, &second).map(|off| Repeated {
+        let other = |name: &str, scene_again: &Value| -> io::Result<Option<(f64, usize)>> {
+            let file = format!("{name}.json");
+            let (ended, again) = run(settings, (&folder, [&file, name]), scene_again)?;
+            let [first, second] =
+                ["out", name].map(|out| read_csv(&folder.join(out).join("history.csv")));
+            Ok(
+                match (ended.map(|status| status.success()), again, first, second) {
+                    (Some(true), Some(again), Ok(first), Ok(second)) => {
+                        off(&scene, &first, &second).map(|off| (off, again.warnings.len()))
+                    }
+                    _ => None,
+                },
+            )
+        };
+        repeated =
+            other("again", &repetition(&scene, &written.scene))?.map(|(off, warnings)| Repeated {
                 off,
-                warnings: summary.warnings.len(),
+                warnings,
+                on_finer_mesh: None,
             });
+        let mut told = summary.iter().flat_map(|s| &s.warnings);
+        if let Some(repeated) = &mut repeated
+            && told.any(|w| is_of_mesh(w))
+        {
+            let finer = finer(&scene).write(&Frame::default());
+            repeated.on_finer_mesh = other("finer", &finer.scene)?.map(|(off, _)| off);
         }
-        if let Some(Repeated { off, warnings: 0 }) = repeated
+        if let Some(Repeated {
+            off, warnings: 0, ..
+        }) = repeated
             && off > UNTOLD
             && warnings == 0
         {

@@ -35,6 +35,26 @@ pub fn repetition(of: &RandomScene, scene: &Value) -> Value {
     scene
 }
 
+/// What warnings about the mesh say, which steps and penalties do not change.
+const OF_MESH: [&str; 4] = [
+    "between its slave points",
+    "are too coarse for",
+    "of sharp convex edges",
+    "its default elements",
+];
+
+/// Whether a warning is one about the mesh: it is true where a finer one has other forces.
+pub fn is_of_mesh(warning: &str) -> bool {
+    OF_MESH.iter().any(|words| warning.contains(words))
+}
+
+/// The scene with elements of half the size in its faces.
+pub fn finer(scene: &RandomScene) -> RandomScene {
+    let mut finer = scene.clone();
+    finer.elements = finer.elements.map(|n| 2 * n);
+    finer
+}
+
 /// How far the force on the tool is off where its way turns and at the end of it, where most, relative to its largest one; with
 /// inertia, which makes it swing, its mean over the run. None: a history says nothing of it.
 pub fn off(of: &RandomScene, run: &Table, repeated: &Table) -> Option<f64> {

@@ -2,7 +2,9 @@
 use crate::support::Outcome;
 use crate::support::solve_in;
 use covact::output::RunStatus;
-use covact::soak::{Frame, Matter, RandomScene, audit, draw, draw_with_effects, off, repetition};
+use covact::soak::{
+    Frame, Matter, RandomScene, audit, draw, draw_with_effects, finer, is_of_mesh, off, repetition,
+};
 use serde_json::Value;
 
 /// Runs a scene, changed by `change`, in this process, and audits what it reports.
@@ -66,6 +68,31 @@ fn random_scenes_with_effects_have_the_forces_of_their_repetitions() {
         metal > 0 && faces > 0 && judged > 1,
         "{metal} {faces} {judged}"
     );
+}
+
+/// A tool that sinks in between slave points is told, and is a matter of the mesh: with half of the step the force is the same, with
+/// elements of half the size another.
+#[test]
+fn a_warning_about_the_mesh_is_true_on_a_finer_one() {
+    let scene = draw_with_effects(46928);
+    let first = audited(&scene, &Value::clone);
+    let told = &first.summary.warnings;
+    assert!(
+        !told.is_empty() && told.iter().all(|w| is_of_mesh(w)),
+        "{told:?}"
+    );
+    assert!(!is_of_mesh(
+        "contact gives way: forces are off by about 2 %"
+    ));
+    let fine = finer(&scene);
+    assert_eq!(fine.elements, scene.elements.map(|n| 2 * n));
+    let [again, finer] = [
+        audited(&scene, &|s| repetition(&scene, s)),
+        audited(&fine, &Value::clone),
+    ]
+    .map(|other| off(&scene, &first.history, &other.history).expect("a force"));
+    println!("{again:.1e} with half of the step, {finer:.1e} on the finer mesh");
+    assert!(again < 0.001 && finer > 0.01, "{again} {finer}");
 }
 
 /// A block jumps from stick to slip, and viscous forces carry it past: the forces of one step do not balance, and that is told.
