@@ -54,7 +54,7 @@ pub(super) fn soak(args: &SoakArgs) -> u8 {
         let told = || repeated().filter(|(p, _)| p.warnings > 0);
         report::stderr(&format!(
             "{} were repeated, {} of them off by more than 2 % of their largest force; {} carry a warning, {} of these are off by \
-             more than 1 %, {} where those about the mesh are held against one of half the size\n",
+             more than 1 %, {} where warnings about the mesh are held against elements of half the size, too\n",
             repeated().count(),
             repeated().filter(|(_, r)| r.off > 0.02).count(),
             told().count(),

@@ -403,7 +403,8 @@ impl March<'_, '_> {
             // Elements that another variant would replace are not followed down to the smallest step.
             let turned = hold::turned(self.model, &failure);
             let mut lost = self.may_be_replaced(&hold::lost(self.model, committed));
-            // Those of a block give way for themselves; a shell may buckle, and follow in smaller steps, as it has not before.
+            // Those of a block give way for themselves. A shell may buckle, and follow in smaller steps; not so in one after which
+            // they turned inside out again.
             let again = |b: &usize| cuts >= hold::SUSPECT || walk.turned.contains(b);
             lost.retain(|b| self.model.bodies[*b].is_block() || again(b));
             walk.turned.extend(turned.and_then(number_of));

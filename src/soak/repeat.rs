@@ -38,7 +38,7 @@ pub fn repetition(of: &RandomScene, scene: &Value) -> Value {
 /// What warnings about the mesh say, which steps and penalties do not change.
 const OF_MESH: [&str; 4] = [
     "between its slave points",
-    "are too coarse for",
+    "too coarse for the smallest convex radius",
     "of sharp convex edges",
     "its default elements",
 ];
