@@ -45,8 +45,8 @@ const FIRST: f64 = 0.5;
 const DRIFT: f64 = 0.05;
 
 /// Part of the work turned over so far, or of what is stored, that a step may not gain out of nothing: no path leads to such a
-/// state. Where penalties change, which put in energy of their own, it is larger.
-const GAINED: [f64; 2] = [0.5, 2.0];
+/// state.
+const GAINED: f64 = 0.5;
 
 /// Sums since the start, and what acts at the last accepted state: all that the watch needs to go on.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -374,8 +374,7 @@ impl Watch {
         // What was stored already may have come in otherwise, with an overclosure that the first step resolved.
         let stored = self.external + self.adjusted - self.imbalance;
         let part = gained / (self.turnover + work.turnover).max(stored);
-        let limit = GAINED[usize::from(work.changed)];
-        (known && gained > work.coarse && part > limit).then_some(part)
+        (known && gained > work.coarse && part > GAINED).then_some(part)
     }
 
     /// What a step loses or gains out of nothing, as a part of the work turned over so far, where its size does not explain it: `energy` as for [`Self::close`], which tells it once the step is accepted. Not known of a

@@ -55,8 +55,8 @@ fn energy_out_of_nothing_is_told_from_that_of_large_steps() {
         changed: true,
         ..work
     };
-    assert_eq!(gained(2, &changed, 23.9), None);
-    assert!(gained(2, &changed, 24.1).is_some());
+    assert_eq!(gained(2, &changed, 5.9), None);
+    assert!(gained(2, &changed, 6.6).is_some());
     assert_eq!(watch.gained(&closed, 2, &work, 18.6), None);
 }
 
