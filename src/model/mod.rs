@@ -3,6 +3,7 @@ pub(crate) mod augmentation;
 pub(crate) mod averaged;
 mod both_faces;
 pub mod build;
+pub(crate) mod carried;
 pub(crate) mod constraints;
 pub(crate) mod driven;
 pub mod dynamics;

@@ -1,7 +1,8 @@
 //! Bodies and tools of a run over time, as a page shows them.
 use super::pack::{Chunk, Pack, Span, levels, planes, rounded};
 use super::skin::{Skin, skin};
-use super::tool::{coarsened, motion};
+use super::tool::coarsened;
+use crate::model::carried::nearest_motion;
 use crate::output::read::{self, Array, BodyFile, Listed, Part, SurfaceFile};
 use covact_geometry::Vec3;
 use nalgebra::Isometry3;
@@ -397,7 +398,9 @@ fn pose(paths: [std::path::PathBuf; 2]) -> Result<Isometry3<f64>, String> {
             return Err(format!("`{}` is no surface", path.display()));
         };
         let way = vectors(&file.fields, "displacement");
-        Ok(way.map_or_else(Isometry3::identity, |way| motion(&file.points, &way)))
+        Ok(way.map_or_else(Isometry3::identity, |way| {
+            nearest_motion(&file.points, &way)
+        }))
     };
     of(&paths[0]).or_else(|_| of(&paths[1]))
 }

@@ -1,6 +1,5 @@
 //! Rigid surfaces for the page: their flat copies with fewer quadrilaterals, and where they are in a step.
 use covact_geometry::Vec3;
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion};
 
 /// A grid of points that the writer of flat copies made of one piece of a surface.
 struct Block {
@@ -86,34 +85,6 @@ fn strides(points: &[Vec3], block: &Block, tolerance: f64) -> [u32; 2] {
     })
 }
 
-/// The rigid motion that leads from `points` nearest to `points + displacement` (Kabsch, Acta Cryst. A32, 1976), by at most
-/// 300 of them.
-pub(super) fn motion(points: &[Vec3], displacement: &[Vec3]) -> Isometry3<f64> {
-    let step = points.len().div_ceil(300).max(1);
-    let chosen = || (points.iter().zip(displacement)).step_by(step);
-    let count = chosen().count().max(1) as f64;
-    let from = chosen().map(|(x, _)| x).sum::<Vec3>() / count;
-    let to = chosen().map(|(x, u)| x + u).sum::<Vec3>() / count;
-    let mut covariance = Matrix3::zeros();
-    for (x, u) in chosen() {
-        covariance += (x + u - to) * (x - from).transpose();
-    }
-    let svd = covariance.svd(true, true);
-    let rotation = match (svd.u, svd.v_t) {
-        (Some(u), Some(v_t)) => {
-            let mut flip = Matrix3::identity();
-            flip[(2, 2)] = (u * v_t).determinant().signum();
-            Rotation3::from_matrix_unchecked(u * flip * v_t)
-        }
-        _ => Rotation3::identity(),
-    };
-    let moved = to - rotation * from;
-    Isometry3::from_parts(
-        Translation3::from(moved),
-        UnitQuaternion::from_rotation_matrix(&rotation),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,19 +122,5 @@ mod tests {
         // What is no grid stays.
         let loose = [[0, 1, 3, 2], [5, 6, 7, 7]];
         assert_eq!(coarsened(&points[..9], &loose, 1.0), loose);
-    }
-
-    #[test]
-    fn a_motion_is_found_again() {
-        let (points, _) = piece(4, |u, v| Vec3::new(u, v, 0.0));
-        let moved = Isometry3::new(Vec3::new(3.0, -1.0, 2.0), Vec3::new(0.3, 2.5, -0.4));
-        let way: Vec<Vec3> = (points.iter())
-            .map(|x| (moved * nalgebra::Point3::from(*x)).coords - x)
-            .collect();
-        let found = motion(&points, &way);
-        for x in &points {
-            let x = nalgebra::Point3::from(*x);
-            assert!((found * x - moved * x).norm() < 1e-12);
-        }
     }
 }

@@ -3,6 +3,7 @@ mod accepted;
 mod astray;
 mod elements;
 mod ending;
+mod foreseen;
 mod giving_up;
 mod hand_over;
 mod motion;
@@ -168,6 +169,7 @@ impl March<'_, '_> {
             (self.assembler).pass(&committed.u, walk.jump.map_or(0.0, |jump| jump.rate));
             self.workspace.unstable = None;
             let penalties = self.assembler.penalties.clone();
+            self.foresee(committed, walk, (dt, end));
             let mut result = (self.attempts(committed, &mut walk.habit, cuts)).solve(
                 step,
                 end,

@@ -218,9 +218,14 @@ fn flow_that_turns_within_the_steps_is_told() {
     );
 }
 
-/// A ball pressed on a sheet that is held at one edge, with high friction, in `steps` steps: what is told, and the force along x.
-fn rubbed(steps: u32) -> (Vec<String>, f64) {
+/// A ball pressed on a sheet that is held at one edge, with high friction, in `steps` steps, from time `begins` on: what is told, and
+/// the force along x.
+fn rubbed(steps: u32, begins: f64) -> (Vec<String>, f64) {
     let size = 1.0 / f64::from(steps);
+    let mut way = vec![[0.0, 0.0], [1.0, -0.8986]];
+    if begins > 0.0 {
+        way.insert(1, [begins, 0.0]);
+    }
     let outcome = done(&json!({
         "covact": 1,
         "materials": { "m": { "st_venant_kirchhoff": { "E": 99952, "nu": 0.052 } } },
@@ -229,7 +234,7 @@ fn rubbed(steps: u32) -> (Vec<String>, f64) {
         } } } },
         "surfaces": { "s": {
             "sphere": { "radius": 4.303, "center": [-0.9322, -0.6863, 4.4813] },
-            "motion": { "translation": [0, 0, "-0.8986*t"] }
+            "motion": { "translation": [0, 0, { "table": way }] }
         } },
         "contacts": { "c": {
             "slave": "b.top", "master": "s", "friction": 0.8514, "penalty": { "value": 2.146e8 }, "points": { "lobatto": 3 }
@@ -241,18 +246,15 @@ fn rubbed(steps: u32) -> (Vec<String>, f64) {
     (told(&outcome), outcome.at("force.s.x", 1.0))
 }
 
-/// On the way through a softened penalty points come to rest at places where friction then keeps them: a force half of that in
-/// smaller steps, which agree with each other and are not told of. It is told, although the step's size explains what it lost.
+/// The ball grips the sheet where it touches it first, and holds it there. Friction that hardly sets in before the step after the
+/// first touch leaves forces from -128 to 431 of 538 in steps as large as these, without a word.
 #[test]
-fn a_step_with_friction_that_a_softened_penalty_led_is_told() {
-    let [(coarse, off), (fine, force), (_, finer)] = [13, 26, 52].map(rubbed);
-    assert!((force / finer - 1.0).abs() < 1e-3, "{force} {finer}");
-    assert!(off < 0.7 * force, "{off} {force}");
-    assert!(
-        coarse
-            .iter()
-            .any(|w| w.contains("come to rest at other places")),
-        "{coarse:?}"
-    );
-    assert!(fine.is_empty(), "{fine:?}");
+fn a_ball_grips_a_sheet_at_once_in_large_steps() {
+    let (_, fine) = rubbed(52, 0.0);
+    assert!((fine / 537.8 - 1.0).abs() < 1e-3, "{fine}");
+    for (steps, begins) in [(3, 0.0), (6, 0.0), (13, 0.0), (6, 0.5), (13, 0.5)] {
+        let (told, force) = rubbed(steps, begins);
+        println!("{steps} from {begins}: {force}, {told:?}");
+        assert!((force / fine - 1.0).abs() < 1e-3, "{force} of {fine}");
+    }
 }

@@ -173,7 +173,7 @@ fn strains_that_do_not_take_what_presses_are_told() {
             }
         },
         "surfaces": { "tool": {
-            "sphere": { "radius": 3.972, "center": [0.937, -0.52, 4.129] },
+            "sphere": { "radius": 3.972, "center": [0.5, -0.52, 4.129] },
             "motion": { "translation": [0, 0, "-0.591*t"] }
         } },
         "contacts": {

@@ -255,7 +255,7 @@ fn the_command_prints_a_table_and_json() {
     let line = lines.find(|l| l.contains("contact.friction.coulomb"));
     let line = line.expect("friction");
     assert!(line.starts_with("  on "), "{line}");
-    assert!(line.contains("832 B"), "{line}");
+    assert!(line.contains("1072 B"), "{line}");
     // Below it, where it was decided and why.
     let below = lines.next().unwrap();
     assert!(below.contains("ironing.json:41:"), "{below}");

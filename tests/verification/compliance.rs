@@ -269,7 +269,7 @@ fn steps_before_a_raise_at_the_last_one_are_told() {
             "root": { "on": "s.x_min", "fixed": true },
             "y": { "on": ["s.y_min", "s.y_max"], "symmetry": "y" }
         },
-        "loads": { "p": { "on": "s.top", "pressure": "0.08*t", "follower": true } },
+        "loads": { "p": { "on": "s.top", "pressure": "0.05*t", "follower": true } },
         "output": { "every": 0 }
     });
     let before = |outcome: &Outcome| {

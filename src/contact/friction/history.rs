@@ -32,6 +32,12 @@ pub struct PointHistory {
     pub lambda_n: f64,
     /// Gap at the last accepted step where the point was open (length, infinite where no foot was found), else zero.
     pub approach: f64,
+    /// Of a point that is open: its way relative to the master in the last accepted step, at both ends of which it was open, in the
+    /// coordinates of `base` (length). Zero where that is not known.
+    pub way: Vec3,
+    /// Within a step, of an open point that is expected to touch: its way from `base` to where it does. It is tied to where it is held
+    /// first, by the full penalty, and the way before is none of friction's. Else zero.
+    pub ahead: Vec3,
     /// Status at the last accepted step.
     pub status: PointStatus,
     /// Normal traction at the last accepted step, `<= 0` (force / length^2).
@@ -83,6 +89,21 @@ impl PointHistory {
         }
     }
 
+    /// Where the point is tied to, in the coordinates of the base.
+    #[inline]
+    pub fn tied_to(&self) -> Vec3 {
+        self.base + self.ahead
+    }
+
+    /// The gap that a point touches from evenly within the step; zero where it is tied to where it touches, or touched before.
+    #[inline]
+    pub fn closes_from(&self) -> f64 {
+        match self.ahead == Vec3::zeros() {
+            true => self.approach,
+            false => 0.0,
+        }
+    }
+
     /// Takes over the end of an accepted step in which the point is in contact: at `local` and under `traction`, both in the
     /// coordinates of the base, which `to_space` turns into those of space; `first` is the traction that the law allowed at
     /// the start of the step, `n` the normal traction now and `eps_t` the tangential penalty. The point is tied to where it is
@@ -117,6 +138,7 @@ impl PointHistory {
         };
         self.base = *local;
         self.approach = 0.0;
+        (self.way, self.ahead) = (Vec3::zeros(), Vec3::zeros());
         self.status = match slides {
             true => PointStatus::Slip,
             false => PointStatus::Stick,
@@ -144,9 +166,9 @@ impl PointHistory {
         }
     }
 
-    /// Takes over the end of an accepted step in which a point that was in contact has opened, at `local` in the coordinates
-    /// of the base. `foot` is its gap (length) and the unit normal at its foot, nothing where there is none. It slides, and its
-    /// traction falls to nothing, in the part of the step before it opens: the normal traction is taken to pass evenly to
+    /// Takes over the end of an accepted step in which a point is open, or has opened, at `local` in the coordinates
+    /// of the base. `foot` is its gap (length) and the unit normal at its foot, nothing where there is none. What has opened slides,
+    /// and its traction falls to nothing, in the part of the step before it opens: the normal traction is taken to pass evenly to
     /// what the law of the pair would make of the gap, or later where it goes along the surface.
     pub fn leave(
         &mut self,
@@ -156,7 +178,12 @@ impl PointHistory {
         eps_t: f64,
         to_space: &Turn,
     ) {
-        if self.status != PointStatus::Open {
+        let mut way = Vec3::zeros();
+        if self.status == PointStatus::Open {
+            if self.approach.is_finite() && foot.is_some() {
+                way = local - self.base;
+            }
+        } else {
             let before = to_space.start.inverse_transform_vector(&self.t);
             // Without a foot the point has gone at once.
             let mut trial = before;
@@ -175,6 +202,7 @@ impl PointHistory {
             self.slip += slid.norm();
         }
         self.release(local, foot.map(|(gap, _)| gap));
+        self.way = way;
     }
 
     /// How far the point slid in a step that it ends in contact (length, a vector in the tangent plane).
@@ -221,7 +249,10 @@ fn grazing(way: f64, gap: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::friction::law::Coulomb;
+    use crate::contact::kernel::Normal;
     use crate::contact::law::Penalty;
+    use nalgebra::Matrix3;
 
     /// A point that half of the step takes to open: `N` from -1 to 1.
     fn left(traction: Vec3, to: Vec3) -> PointHistory {
@@ -265,5 +296,40 @@ mod tests {
         history.leave(&Vec3::new(5.0, 0.0, 9.0), None, &law, 1.0, &still);
         assert!((history.slip - 0.3).abs() < 1e-15 && (history.dissipated - 0.045).abs() < 1e-15);
         assert!(history.approach.is_infinite() && history.status == PointStatus::Open);
+    }
+
+    /// It comes down at 45 degrees in steps of 2 and 1, touches half way through the second and slides on, under a traction of 1 at a
+    /// tangential penalty of 10.
+    #[test]
+    fn a_point_that_was_expected_to_touch_is_tied_to_where_it_does() {
+        let (still, law) = (Turn::none(), Penalty { eps_n: 2.0 });
+        let at = |x: f64, z: f64| Vec3::new(x, 0.0, z);
+        let mut history = PointHistory::default();
+        history.release(&at(-2.0, 2.5), Some(2.5));
+        assert_eq!(history.way, Vec3::zeros());
+        let foot = Some((0.5, Vec3::z()));
+        history.leave(&at(0.0, 0.5), foot, &law, 10.0, &still);
+        assert_eq!((history.way, history.closes_from()), (at(2.0, -2.0), 0.5));
+        history.ahead = history.way / 4.0;
+        assert!((history.tied_to() - at(0.5, 0.0)).norm() < 1e-15);
+        assert_eq!(history.closes_from(), 0.0);
+
+        let (local, n) = (at(0.9, 0.0), Vec3::z());
+        let normal = Normal { n: -2.0, dn: 1.0 };
+        let traction = (history.attraction(10.0)).traction(
+            &Coulomb { mu: 0.5 },
+            &local,
+            &n,
+            &Matrix3::zeros(),
+            -1e-6,
+            &normal,
+        );
+        assert!((traction.trial - at(4.0, 0.0)).norm() < 1e-12);
+        history.accept(&local, &traction, &Vec3::zeros(), -2.0, 10.0, &still);
+        // Of the way of .9 the part of a point that comes at this angle, less the elastic slip of .1 as of the way after it touched.
+        let part = 1.0 / (1.0 + (0.5f64 / 0.9).powi(2));
+        assert!((history.slip - (0.9 * part - 0.1)).abs() < 1e-12);
+        assert!((history.dissipated - 0.5 * history.slip).abs() < 1e-12);
+        assert_eq!((history.way, history.ahead), (Vec3::zeros(), Vec3::zeros()));
     }
 }

@@ -63,9 +63,9 @@ impl PointHistory {
     pub fn attraction(&self, eps_t: f64) -> Attraction {
         Attraction {
             eps_t,
-            base: self.base,
+            base: self.tied_to(),
             lambda: self.lambda,
-            approach: self.approach,
+            approach: self.closes_from(),
         }
     }
 }

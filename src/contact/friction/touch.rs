@@ -104,18 +104,18 @@ impl MovingMaster<'_> {
                 xi: place.xi,
             },
         )?;
-        let components = [&history.base, &history.lambda];
+        let components = [&history.tied_to(), &history.lambda];
         Ok(Pull::new(
             &anchor,
             components,
             eps_t,
-            history.approach,
+            history.closes_from(),
             x,
             gap,
         ))
     }
 
-    /// Attaches an attraction point and its traction, in space, to the surface at `foot`, to move with it from now on. Where
+    /// Attaches an attraction point, its traction and the way of an open point, in space, to the surface at `foot`, to move with it from now on. Where
     /// the facet has no normal there, the place is moved a little towards its middle; where it has none anywhere near,
     /// or there is no foot, the point is attached to nothing and nothing pulls at it.
     pub fn attach(&self, history: &mut PointHistory, foot: Option<Hint>) {
@@ -126,18 +126,23 @@ impl MovingMaster<'_> {
                 Some((Hint { patch, xi }, anchor))
             })
         });
-        (history.place, history.base, history.lambda) = match found {
-            Some((place, anchor)) => (
-                Some(place),
-                anchor.components(&(history.base - anchor.rho)),
-                anchor.components(&history.lambda),
-            ),
-            None => (None, Vec3::zeros(), Vec3::zeros()),
-        };
+        let PointHistory {
+            base, way, lambda, ..
+        } = history;
+        match &found {
+            Some((_, anchor)) => {
+                *base -= anchor.rho;
+                for v in [base, way, lambda] {
+                    *v = anchor.components(v);
+                }
+            }
+            None => [*base, *way, *lambda] = [Vec3::zeros(); 3],
+        }
+        history.place = found.map(|(place, _)| place);
     }
 
     /// Turns attraction point and traction of a history into those of space, where the surface is now; of a history without
-    /// a place the attraction point is `x`.
+    /// a place the attraction point is `x`. The way that an open point went before has no use then.
     pub fn detach(&self, history: &mut PointHistory, x: &Vec3) {
         let place = history.place.take();
         let anchor = place.and_then(|p| Anchor::new(&self.facets.jet(p.patch, p.xi)));

@@ -13,7 +13,7 @@ pub struct Attraction<D = f64> {
     pub base: Vector3<D>,
     /// Traction at the base, or multiplier (force / length^2).
     pub lambda: Vector3<D>,
-    /// Gap at the last accepted step where the point was open, else zero (length).
+    /// Gap at the last accepted step of a point that touches from it evenly, else zero (length).
     pub approach: f64,
 }
 

@@ -35,7 +35,7 @@ use std::time::{Duration, Instant};
 /// First bytes of a file; the line ends show where it was taken for text.
 const MARK: &[u8; 8] = b"covact\r\n";
 /// Version of the layout and of the sections; to be raised with every change of them.
-const FORMAT: u32 = 33;
+const FORMAT: u32 = 34;
 /// Mark, format, length and number.
 const HEAD: usize = 28;
 /// Time between two checkpoints that are brought to the disk, in times of what the last one took.

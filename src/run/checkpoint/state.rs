@@ -180,6 +180,8 @@ fn put_history(history: &PointHistory, out: &mut Writer) {
         lambda,
         lambda_n,
         approach,
+        way,
+        ahead: _,
         status,
         n,
         t,
@@ -188,7 +190,7 @@ fn put_history(history: &PointHistory, out: &mut Writer) {
         sudden: _,
     } = history;
     put_hint(*place, out);
-    for v in [base, lambda, t] {
+    for v in [base, lambda, way, t] {
         out.f64s(v.as_slice());
     }
     out.f64s(&[*lambda_n, *approach, *n, *slip, *dissipated]);
@@ -201,8 +203,8 @@ fn put_history(history: &PointHistory, out: &mut Writer) {
 
 fn take_history(from: &mut Reader) -> Result<PointHistory, Malformed> {
     let place = take_hint(from)?;
-    let [mut base, mut lambda, mut t] = [Vec3::zeros(); 3];
-    for v in [&mut base, &mut lambda, &mut t] {
+    let [mut base, mut lambda, mut way, mut t] = [Vec3::zeros(); 4];
+    for v in [&mut base, &mut lambda, &mut way, &mut t] {
         from.f64s(v.as_mut_slice())?;
     }
     let mut rest = [0.0; 5];
@@ -220,6 +222,9 @@ fn take_history(from: &mut Reader) -> Result<PointHistory, Malformed> {
         lambda,
         lambda_n,
         approach,
+        way,
+        // Of a step that is yet to be taken.
+        ahead: Vec3::zeros(),
         status,
         n,
         t,

