@@ -263,14 +263,12 @@ impl March<'_, '_> {
                         self.take_back(&penalties);
                         break 'solved failure;
                     }
-                    if cuts < GIVES_IN
-                        && moved.is_none()
-                        && let Some(part) = self.watch.gained(self.model, step, &work, energy)
-                    {
+                    let large = walk.stepping.large(dt) && passing.is_none();
+                    let gained = (self.watch).gained(self.model, (step, large), &work, energy);
+                    if let Some(part) = gained.filter(|_| cuts < GIVES_IN && moved.is_none()) {
                         self.take_back(&penalties);
                         break 'solved StepFailure::GainedEnergy { part };
                     }
-                    let large = walk.stepping.large(dt) && passing.is_none();
                     if let Some(failure) =
                         self.astray((step, cuts, large), (&work, energy), (&span, &converged))
                     {

@@ -45,8 +45,8 @@ const FIRST: f64 = 0.5;
 const DRIFT: f64 = 0.05;
 
 /// Part of the work turned over so far, or of what is stored, that a step may not gain out of nothing: no path leads to such a
-/// state.
-const GAINED: f64 = 0.5;
+/// state. Where penalties change, which put in energy of their own, it is larger in small steps.
+const GAINED: [f64; 2] = [0.5, 2.0];
 
 /// Sums since the start, and what acts at the last accepted state: all that the watch needs to go on.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -367,14 +367,21 @@ impl Watch {
 
     /// What a step gains out of nothing, as a part of the work turned over so far or of what was stored, where that is too much to be a path: `energy`
     /// as for [`Self::close`]. Not known of a first step and of overclosures.
-    pub fn gained(&self, model: &Model, step: u32, work: &Work, energy: f64) -> Option<f64> {
+    pub fn gained(
+        &self,
+        model: &Model,
+        (step, large): (u32, bool),
+        work: &Work,
+        energy: f64,
+    ) -> Option<f64> {
         let known = step > 1 && model.pairs.iter().all(|p| p.overclosure.is_none());
         let put_in = self.external + work.external + self.adjusted + work.adjusted;
         let gained = energy + self.imbalance - put_in;
         // What was stored already may have come in otherwise, with an overclosure that the first step resolved.
         let stored = self.external + self.adjusted - self.imbalance;
         let part = gained / (self.turnover + work.turnover).max(stored);
-        (known && gained > work.coarse && part > GAINED).then_some(part)
+        let limit = GAINED[usize::from(work.changed && !large)];
+        (known && gained > work.coarse && part > limit).then_some(part)
     }
 
     /// What a step loses or gains out of nothing, as a part of the work turned over so far, where its size does not explain it: `energy` as for [`Self::close`], which tells it once the step is accepted. Not known of a

@@ -41,7 +41,8 @@ fn energy_out_of_nothing_is_told_from_that_of_large_steps() {
         coarse: 0.5,
         ..Work::default()
     };
-    let gained = |step, work: &Work, more: f64| watch.gained(&open, step, work, 12.0 + more);
+    let sized = |size, work: &Work, more: f64| watch.gained(&open, size, work, 12.0 + more);
+    let gained = |step, work: &Work, more: f64| sized((step, true), work, more);
     assert_eq!(gained(2, &work, 5.9), None);
     let part = gained(2, &work, 6.6).expect("too much");
     assert!((part - 0.55).abs() < 1e-12, "{part}");
@@ -57,7 +58,9 @@ fn energy_out_of_nothing_is_told_from_that_of_large_steps() {
     };
     assert_eq!(gained(2, &changed, 5.9), None);
     assert!(gained(2, &changed, 6.6).is_some());
-    assert_eq!(watch.gained(&closed, 2, &work, 18.6), None);
+    assert_eq!(sized((2, false), &changed, 23.9), None);
+    assert!(sized((2, false), &changed, 24.1).is_some());
+    assert_eq!(watch.gained(&closed, (2, true), &work, 18.6), None);
 }
 
 /// What a step from a softened penalty loses or gains beside what its size explains is a jump from a hundredth of the work on. A
